@@ -12,7 +12,7 @@ import shlex
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
 
 import numpy as np
 
@@ -28,6 +28,7 @@ MOST_JOBS, LIST_LENGTH = 64, (2, 16)
 DRAW_TOLERANCE = 4  # of a draw over that of the case: its height is read between its drops, too
 FASTEST = 1.03  # speed over that of free fall, beyond which a pair of a rig is wrong
 OUTPUT = ("report.html", "cfh.png", "cfh.csv", "cfh_draws.csv", "cfh_curves.csv", "cfh.json")
+STALE = ("cfh_band.csv", "cfh.gp")  # of softfall-cfh, which this command replaces with --force
 CAUTION = "Figures of simulated drops: indicative, not a certification."
 
 
@@ -52,6 +53,7 @@ def parser(prog: str) -> Parser:
     add("--posterior", metavar="FOLDER", help="draws of the foam, draw-001.cfg ..., as softfall-fit drop writes them: gives the height that the pad has at least")
     add("--quantile", metavar="SHARE", type=float, default=0.05, help="with --posterior: share of the foams that may be below the answer (default 0.05)")
     add("-j", "--jobs", metavar="N", type=int, help=f"drops side by side, {MOST_JOBS} at most (default: as many as processors); the same results")
+    add("-t", "--threads", metavar="N", type=int, help=argparse.SUPPRESS)
     add("--retry", action="store_true", help="simulate drops again that failed earlier")
     return made
 
@@ -123,6 +125,8 @@ def _check(o: argparse.Namespace) -> None:
     for name, low, high in (("limit_g", 0, 1e9), ("limit_hic", 0, 1e9), ("tolerance", 1e-4, 0.2), ("quantile", 0, 0.5)):
         if not low < getattr(o, name) <= high:
             raise InputError(f"--{name.replace('_', '-')} {getattr(o, name):g} is outside of {low:g} to {high:g}")
+    if o.threads is not None:
+        raise InputError(f"--threads={o.threads}: each drop takes one thread; give --jobs, the number of drops side by side")
     if o.jobs is not None and not 1 <= o.jobs <= MOST_JOBS:
         raise InputError(f"--jobs {o.jobs} is outside of 1 to {MOST_JOBS}")
     if o.heights and (o.height or o.max_height):
@@ -173,8 +177,8 @@ def _overrides(o: argparse.Namespace) -> list[str]:
     return [*([f"material=@{o.material}"] if o.material else []), *(f"{key}={text}" for key, text in values_of(o.set).items())]
 
 
-def run(options: argparse.Namespace) -> int:
-    """Runs the command and returns its exit code."""
+def run(options: argparse.Namespace, tell: Callable[[str], None] = say, command: str = "") -> int:
+    """Runs the command and returns its exit code. `command`: what was called, for the files, if it was not the command line."""
     o, folder = options, Path(options.output)
     _check(o)
     there = [name for name in OUTPUT if (folder / name).exists()]
@@ -184,9 +188,9 @@ def run(options: argparse.Namespace) -> int:
     draws = cfh_draws.read(Path(o.posterior), s.case, values_of(o.set)) if o.posterior else []
     search = _search(o, s)
     if s.rig.pairs:
-        say(f"rig {o.rig}: g_eff = {s.rig.gravity:.3f} ± {s.rig.error:.3f} m/s2 from {s.rig.pairs} pairs")
+        tell(f"rig {o.rig}: g_eff = {s.rig.gravity:.3f} ± {s.rig.error:.3f} m/s2 from {s.rig.pairs} pairs")
     memory.hold_units()
-    bench = Bench(str(s.case.path), _overrides(o), folder, o.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0))), o.retry, say)
+    bench = Bench(str(s.case.path), _overrides(o), folder, o.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0))), o.retry, tell)
     s.points, s.ending = bench.run({"": search})[""]
     s.result = cfh.evaluate(s.points, s.limits)
     if draws:
@@ -194,13 +198,15 @@ def run(options: argparse.Namespace) -> int:
     s.simulated, s.found = bench.simulated, bench.found
     cfh_page.write(s, folder)
     _write_tables(s, folder)
-    output_files.write(folder / "cfh.json", json.dumps(_summary(s), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+    output_files.write(folder / "cfh.json", json.dumps(_summary(s, command or shlex.join(["softfall", *sys.argv[1:]])), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+    for name in STALE:
+        (folder / name).unlink(missing_ok=True)
     for c, one in enumerate(s.result.crossings):
         place = f"at {one.height:.3f} m, between drops at {one.below:.4g} and {one.above:.4g} m" if one.state == "crossed" else one.state
-        say(f"  {CRITERIA[c]:<5} {s.limits[c]:6g}{UNITS[c]:<2}  {place}")
+        tell(f"  {CRITERIA[c]:<5} {s.limits[c]:6g}{UNITS[c]:<2}  {place}")
     for line in cfh_page.answer(s):
-        say(line)
-    say(f"{s.simulated} drops simulated, {s.found} were there\nWritten: {folder}/report.html, cfh.json, cfh.csv, cfh.png\n{CAUTION}")
+        tell(line)
+    tell(f"{s.simulated} drops simulated, {s.found} were there\nWritten: {folder}/report.html, cfh.json, cfh.csv, cfh.png\n{CAUTION}")
     if s.result.verdict == "not determined":
         raise NumericError(s.result.problem, 5)
     return 0
@@ -217,11 +223,11 @@ def _spread(s: Study, bench: Bench, search: Search, draws: list[cfh_draws.Draw])
     slope = (near[1].excess(s.limits) - near[0].excess(s.limits)) / math.log(near[1].height / near[0].height) if near[1:] else cfh.FIRST_SLOPE
     one = Search(s.limits, first, search.highest, DRAW_TOLERANCE * search.tolerance, at_once=1, slope=slope)
     bench.overrides = [text for text in bench.overrides if not text.startswith("material=")]
-    say(f"{len(draws)} draws of {s.options.posterior}, each by drops of its own")
+    bench.tell(f"{len(draws)} draws of {s.options.posterior}, each by drops of its own")
     made = bench.run({draw.path: one for draw in draws}, {draw.path: draw.path for draw in draws})
     s.draw_points = [made[draw.path][0] for draw in draws]
     at = min(usable, key=lambda p: abs(math.log(p.height / first))).figures
-    s.spread = cfh_draws.spread(draws, s.draw_points, s.limits, at.get("a_max_mesh_error", math.nan), (at["a_max_scatter"], at["hic_scatter"]),
+    s.spread = cfh_draws.spread(draws, [made[draw.path] for draw in draws], s.limits, at.get("a_max_mesh_error", math.nan), (at["a_max_scatter"], at["hic_scatter"]),
                                 (s.rig.gravity, s.rig.error, s.rig.pairs), s.options.quantile)
 
 
@@ -237,7 +243,7 @@ def _interval(name: str, one: cfh_draws.Interval | None) -> dict[str, Any]:
     return {f"{name}_low_m": _number(one.low) or None, f"{name}_median_m": _number(one.median) or None, f"{name}_high_m": _number(one.high) or None, f"{name}_open": one.open}
 
 
-def _summary(s: Study) -> dict[str, Any]:
+def _summary(s: Study, command: str) -> dict[str, Any]:
     """Returns cfh.json."""
     r, rig, found = s.result, s.rig, s.spread
     whole = found.parts[cfh_draws.PARTS[2]] if found else None
@@ -267,7 +273,7 @@ def _summary(s: Study) -> dict[str, Any]:
     points = [{"height_m": _number(p.height), "speed_m_s": _number(cfh.speed_of(p.height)), "a_max_g": _number(p.value[0]), "hic": _number(p.value[1]),
                **{key: _number(p.figures.get(key)) for key in ("v_rebound_m_s", "max_indentation_mm", "max_local_strain", "energy_error")},
                "failed": p.failed, "grade": p.grade, "note": p.note or None, **({"rig_height_m": _number(rig.height(p.height))} if rig.pairs else {})} for p in s.points]
-    return {"program": f"softfall cfh {library.version()}", "command_line": shlex.join(["softfall", *sys.argv[1:]]), "caution": CAUTION, "case": s.options.case,
+    return {"program": f"softfall cfh {library.version()}", "command_line": command, "caution": CAUTION, "case": s.options.case,
             "material": s.options.material, "missile_mass_kg": _number(library.quantity(s.case["missile.mass"])[0]), "judged_by": s.judged_by or None,
             "compression_table_end": _number(s.data_end), "critical_fall_height": height,
             "rig": {"file": s.options.rig, "pairs": rig.pairs, "g_eff_m_s2": _number(rig.gravity), "standard_error_m_s2": _number(rig.error)},

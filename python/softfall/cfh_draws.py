@@ -135,7 +135,7 @@ class Spread:
     @property
     def bounded(self) -> int:
         """The draws that stay below the limits up to a drop that cannot be used: the height of the last one stands for theirs."""
-        return sum(one.verdict == "above the highest point" and one.exceeding is not None for one in self.results)
+        return sum(one.verdict == "above the highest point" and math.isfinite(height) for one, height in zip(self.results, self.foam))
 
 
 def _interval(values: Array, quantile: float) -> Interval:
@@ -163,14 +163,15 @@ def _heights(points: Sequence[Point], result: Result, limits: Sequence[float], r
     return first
 
 
-def spread(draws: list[Draw], points: Sequence[Sequence[Point]], limits: Sequence[float], mesh_error: float, scatter: Sequence[float],
+def spread(draws: list[Draw], searches: Sequence[tuple[Sequence[Point], str]], limits: Sequence[float], mesh_error: float, scatter: Sequence[float],
            rig: tuple[float, float, int], quantile: float) -> Spread:
     """Returns intervals of the height: of the foam alone, then with the errors of the responses, of the mesh, and with the scatter of single drops.
 
-    `scatter`: of ln(a_max) and ln(HIC), NaN: not known. `rig`: g_eff, its standard error, pairs.
+    `searches`: the drops of each draw, and how its search ended. `scatter`: of ln(a_max) and ln(HIC), NaN: not known. `rig`: g_eff, its standard error, pairs.
     """
-    results = [evaluate(one, limits) for one in points]
-    foam = np.array([{"found": one.height, "above the highest point": one.highest if one.exceeding else math.inf}.get(one.verdict, 0.0) for one in results])
+    points, results = [one for one, _ in searches], [evaluate(one, limits) for one, _ in searches]
+    foam = np.array([{"found": one.height, "above the highest point": math.inf if ending == "max" else one.highest}.get(one.verdict, 0.0)
+                     for one, (_, ending) in zip(results, searches)])
     made = Spread(draws, results, foam, mesh_error=mesh_error)
     random = np.random.default_rng(SEED)
     shape = (len(draws), 2, REPEATS)

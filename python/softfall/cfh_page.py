@@ -82,7 +82,8 @@ def answer(s: Study) -> list[str]:
         form = cfh_draws.lowest_form(s.spread, s.spread.parts[cfh_draws.PARTS[2]].at_least)
         said.append(f"The lowest draws have the form {form}" if form else "The draws do not state the form of their curve: posterior.csv of softfall-fit beside their folder does")
         if s.spread.bounded:
-            said.append(f"{s.spread.bounded} draws stay below the limits up to a drop that cannot be used: the last height before it is taken for theirs")
+            said.append(f"{s.spread.bounded} draws stay below the limits up to a drop that cannot be used: the last height before it is taken for theirs, so that "
+                        "median and upper end may be too low")
     elif s.no_interval:
         said.append(f"No interval: {s.no_interval}")
     else:

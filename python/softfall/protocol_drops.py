@@ -2,7 +2,6 @@
 """The drops of a protocol that are simulated: those whose curves are shown by the programs, draws of a foam in memory."""
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import math
@@ -14,7 +13,7 @@ from typing import Any, Iterable, Mapping
 
 import numpy as np
 
-from . import memory, programs
+from . import cfh_command, memory, programs
 from .array import Array
 from .case import Case
 from .curves import Hic, hic
@@ -305,38 +304,36 @@ OF_THE_DROP = (4, 5)  # exit codes of a model or a solution that fails: others e
 
 def search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
            options: Mapping[str, Any], limits: tuple[float | None, float | None] | None = None, shown: bool = True) -> Search:
-    """Runs softfall-cfh below a folder, and reads its drops if they are shown. `limits` of a_max (g) and HIC are those of the protocol unless given."""
+    """Searches the critical height below a folder, and simulates its drops with their curves if they are shown. `limits` of a_max (g) and HIC are those of the protocol unless given."""
     folder /= "heights"
     folder.mkdir(parents=True, exist_ok=True)
     a_max, hic_value = limits or (p.limit_of("a_max_g"), p.limit_of("hic"))
-    given = {"limit_g": a_max or NO_LIMIT, "limit_hic": hic_value or NO_LIMIT, "posterior": posterior,
-             "force": (folder / "cfh.json").exists(), **options, "views": None}
-    programs.run("cfh", [str(case.path), f"--output={folder}", *(f"--set={key}={text}" for key, text in case.overrides.items()),
-                         *programs.options(given)])
+    given = {"limit_g": a_max or NO_LIMIT, "limit_hic": hic_value or NO_LIMIT, "force": True}
+    sets, threads = [f"--set={key}={text}" for key, text in case.overrides.items()], options.get("threads")
+    if posterior:  # columns of every draw at every height, for the advice
+        programs.run("cfh", [str(case.path), f"--output={folder}", *sets, *programs.options({**given, "posterior": posterior, **options, "views": None})])
+    else:
+        words = [f"--output={folder}", *sets, *programs.options({**given, "jobs": options.get("jobs")}), "--", str(case.path)]
+        cfh_command.run(cfh_command.parser("softfall cfh").parse_args(words), lambda text: None, f"critical height of {p.path}")
     found = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
     height = found.summary["critical_fall_height"].get("height_m")
     if shown:
-        found.drops = [_point(p, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs") for point in found.summary["points"]]
+        found.drops = [_point(p, case, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs", threads) for point in found.summary["points"]]
     if options.get("views") and height:
-        drop = case.copy()
-        drop["missile.velocity"] = f"{speed(height):.12g} m/s"
-        with contextlib.suppress(NumericError):  # a height between drops that worked may be one at which the foam locks up
-            found.view = drop.run(threads=options.get("threads"), output=folder / "view", force=True).report().parent
+        found.view = _view(_case_of(case, Spot(condition.name, position.name, height)), folder / "runs", threads)  # None: the foam may lock up between drops that worked
     return found
 
 
-def _point(p: Protocol, spot: Spot, point: Mapping[str, Any], runs: Path) -> Drop:
-    """Returns a drop of a search. Its curve is of those results of its height, also of earlier inputs, that have its figures."""
-    drop = Drop(spot, 1, "", grade="do not use" if point["failed"] else point["grade"] or "", note=point["note"] or "")
+def _point(p: Protocol, case: Case, spot: Spot, point: Mapping[str, Any], runs: Path, threads: int | None) -> Drop:
+    """Returns a drop of a search, simulated once more for its curve if it can be used; its grade is that of the search."""
+    drop = Drop(spot, 1, "", grade="do not use" if point["failed"] else point["grade"], note=point["note"] or "")
     if point["failed"]:
         return drop
-    drop.figures = take_figures(p.figures, {key: value for key, value in point.items() if isinstance(value, (int, float))}, None)
-    for path in runs.glob(f"h{spot.height:.4g}m-*/results.h5"):
-        kept = re.search(r"^a_max_g (\S+)$", path.with_name("figures.txt").read_text(encoding="utf-8"), re.M) if path.with_name("figures.txt").exists() else None
-        if kept and abs(float.fromhex(kept.group(1)) / point["a_max_g"] - 1) < 1e-7:
-            drop.source = str(path)
-            drop.figures, drop.curve, drop.mesh_error = _read(p, path)
-    return drop
+    one = _case_of(case, spot)
+    one.update(text.split("=", 1) for text in memory.LEAN)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return replace(_result(p, spot, 1, Path(one.run(threads=threads, runs=runs).results)), grade=drop.grade, note=drop.note)
 
 
 def _result(p: Protocol, spot: Spot, number: int, path: Path) -> Drop:
@@ -345,16 +342,6 @@ def _result(p: Protocol, spot: Spot, number: int, path: Path) -> Drop:
     result.post(filter=int(p.filter))
     curve, verdict = result.curve(), result.verdict
     return Drop(spot, number, str(path), take_figures(p.figures, result.figures, curve), str(verdict), "; ".join(verdict.remarks), curve, mesh_error=_mesh_error(verdict))
-
-
-def _read(p: Protocol, path: Path) -> tuple[dict[str, float], tuple[Any, Any], float]:
-    """Returns the figures, the curve and the expected error of the mesh of results."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        result = read_results(path)
-        result.post(filter=int(p.filter))
-        curve = result.curve()
-        return take_figures(p.figures, result.figures, curve), curve, _mesh_error(result.verdict)
 
 
 def _beside(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, there: Search, measured: Drops | None,

@@ -231,7 +231,7 @@ def _spread(response: tuple[float, ...] | None, mesh: float, quantile: float = 0
     scale = np.linspace(0.8, 1.25, 200)
     points = [[law(100 * a, 1.0, 1.0, 1.0)(h) for h in (1.0, 1.98 / a, 2.02 / a)] for a in scale]
     draws = [cfh_draws.Draw("", {}, response, "") for _ in scale]
-    return cfh_draws.spread(draws, [sorted(one, key=lambda p: p.height) for one in points], (200.0, 1e9), mesh, (math.nan, math.nan), (8.0, 0.0, 2), quantile)
+    return cfh_draws.spread(draws, [(sorted(one, key=lambda p: p.height), "enough") for one in points], (200.0, 1e9), mesh, (math.nan, math.nan), (8.0, 0.0, 2), quantile)
 
 
 def test_errors_move_and_widen_the_heights_as_their_closed_form_does() -> None:
@@ -251,13 +251,17 @@ def test_draws_without_a_height_are_on_the_safe_side() -> None:
     good = [[law(100, 1.0, 1.0, 1.0)(h) for h in (1.9, 2.1)] for _ in range(100)]
     draws = [cfh_draws.Draw("", {}, None, "") for _ in good]
 
-    def least(bad: list[Point], count: int) -> cfh_draws.Spread:
-        return cfh_draws.spread(draws, [bad] * count + good[count:], (200.0, 1e9), 0.0, (math.nan, math.nan), (8.0, 0.0, 0), 0.05)
+    def least(bad: list[Point], count: int, ending: str = "collapsed") -> cfh_draws.Spread:
+        return cfh_draws.spread(draws, [(bad, ending)] * count + [(one, "enough") for one in good[count:]], (200.0, 1e9), 0.0, (math.nan, math.nan), (8.0, 0.0, 0), 0.05)
     nothing = Point(2.0, (math.nan, math.nan))
     assert least([nothing], 10).parts["foam"].at_least == 0 and least([nothing], 10).unknown == 10  # no height can be promised
     assert least([nothing], 3).parts["foam"].at_least == pytest.approx(2, rel=1e-3)
     bounded = least([law(100, 1.0, 1.0, 1.0)(1.5), nothing._replace(on_anvil=True)], 10)
     assert bounded.parts["foam"].at_least == 1.5 and bounded.bounded == 10
+    silent = least([law(100, 1.0, 1.0, 1.0)(1.5), nothing], 60)  # the drop above tells nothing: that is no height without a limit
+    assert silent.parts["foam"].high == pytest.approx(2, rel=1e-3) and silent.parts["foam"].median == 1.5 and silent.bounded == 60
+    free = least([law(100, 1.0, 1.0, 1.0)(1.5)], 60, "max")  # no limit is reached up to the greatest height
+    assert math.isinf(free.parts["foam"].median) and free.bounded == 0
 
 
 # ---- bad input
