@@ -157,7 +157,7 @@ def _read_case(o: argparse.Namespace) -> Study:
     made = Study(o, case, read_rig(o.rig) if o.rig else Rig(), (o.limit_g, o.limit_hic))
     if [float(x) for x in str(case["missile.direction"]).strip("[] ").split(",")] != [0, 0, -1]:
         raise InputError("missile.direction is not [0, 0, -1]: a drop height belongs to a vertical fall")
-    with memory.Inputs(str(case.path), _overrides(o)) as inputs:
+    with memory.Inputs(str(case.path), _overrides(case)) as inputs:
         counted, ends = inputs.counted(), inputs.data_ends()
         if len(counted) > 1 and o.posterior:
             raise InputError(f"series.drops = {len(counted)}: --posterior is for first drops, as its draws were identified by those")
@@ -173,8 +173,8 @@ def _read_case(o: argparse.Namespace) -> Study:
     return made
 
 
-def _overrides(o: argparse.Namespace) -> list[str]:
-    return [*([f"material=@{o.material}"] if o.material else []), *(f"{key}={text}" for key, text in values_of(o.set).items())]
+def _overrides(case: Case) -> list[str]:
+    return [f"{key}={text}" for key, text in case.overrides.items()]
 
 
 def run(options: argparse.Namespace, tell: Callable[[str], None] = say, command: str = "") -> int:
@@ -190,7 +190,7 @@ def run(options: argparse.Namespace, tell: Callable[[str], None] = say, command:
     if s.rig.pairs:
         tell(f"rig {o.rig}: g_eff = {s.rig.gravity:.3f} ± {s.rig.error:.3f} m/s2 from {s.rig.pairs} pairs")
     memory.hold_units()
-    bench = Bench(str(s.case.path), _overrides(o), folder, o.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0))), o.retry, tell)
+    bench = Bench(str(s.case.path), _overrides(s.case), folder, o.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0))), o.retry, tell)
     s.points, s.ending = bench.run({"": search})[""]
     s.result = cfh.evaluate(s.points, s.limits)
     if draws:

@@ -149,6 +149,19 @@ def test_the_height_is_that_whose_own_drop_reaches_the_limit(tmp_path: Path) -> 
     assert on_rig["rig"]["g_eff_m_s2"] == pytest.approx(8) and on_rig["critical_fall_height"]["rig_height_m"] == pytest.approx(found["height_m"] * 9.80665 / 8, rel=1e-3)
 
 
+def test_heights_and_drops_are_those_of_softfall_cfh(tmp_path: Path) -> None:
+    """The reference of the program in C: drops of the same height equal it to all digits, the height lies within what its fit of four drops leaves open."""
+    known = json.loads((EXAMPLES.parent / "tests/reference/cfh-found.json").read_text())["figures"]["cfh.json"]
+    run(EXAMPLES / "eva50-v4.5/case.cfg", "-o", tmp_path, "--set", "geometry.parameters.fine_spacing=20", "--set", "geometry.parameters.outer_spacing=40",
+        "--set", "pad.mesh_error_limit=1", "-j", 2)
+    made = summary(tmp_path)
+    assert made["critical_fall_height"]["height_m"] == pytest.approx(known["critical_fall_height"]["height_m"], rel=5e-4)
+    first, = (point for point in made["points"] if point["height_m"] == known["points"][0]["height_m"])
+    same = ("speed_m_s", "a_max_g", "hic", "v_rebound_m_s", "max_indentation_mm", "max_local_strain", "energy_error", "grade")
+    assert {key: first[key] for key in same} == {key: known["points"][0][key] for key in same}
+    assert (made["compression_table_end"], made["missile_mass_kg"]) == (known["compression_table_end"], known["missile_mass_kg"])
+
+
 def test_heights_of_a_list_and_a_pad_without_a_height(tmp_path: Path) -> None:
     run(CASE, "-o", tmp_path, *SET, "--heights", "0.5 m, 1 m,150 cm", "--limit-hic", 300)
     made = summary(tmp_path)
@@ -177,6 +190,15 @@ def test_a_search_that_was_killed_goes_on(tmp_path: Path) -> None:
     assert kills and before >= 1 and f"{before} were there" in said
     ours, whole = summary(tmp_path / "out"), summary(tmp_path / "whole")
     assert ours["points"] == whole["points"] and ours["critical_fall_height"] == whole["critical_fall_height"]
+
+
+def test_two_commands_in_one_folder_share_their_drops(tmp_path: Path) -> None:
+    words = [str(BIN / "softfall"), "cfh", str(CASE), "-o", str(tmp_path), *SET, "--force", "-j", "1"]
+    both = [subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+    said = [process.communicate() for process in both]
+    assert [process.returncode for process in both] == [0, 0], said
+    simulated = [int(re.search(r"(\d+) drops simulated", out)[1]) for out, _ in said]  # type: ignore[index]
+    assert sum(simulated) == _done(tmp_path) == len(summary(tmp_path)["points"])
 
 
 def _done(folder: Path) -> int:
