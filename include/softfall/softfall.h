@@ -107,6 +107,9 @@ typedef struct softfall_case_drop {
 } softfall_case_drop;
 /* Drop number `drop`, from 1 to `drops`. */
 SOFTFALL_API softfall_case_drop softfall_case_drop_get(const softfall_case *c, int drop);
+/* Returns the strain (-) at which the data of a foam end: of layer `layer`, from 0 on, 0 for a pad of one
+ * material. NaN: there is no such layer. */
+SOFTFALL_API double softfall_case_data_end(const softfall_case *c, int layer);
 /* SOFTFALL_INPUT: the case has no place in a study, for a parameter that a geometry does not have, or a
  * series of drops on a foam without memory. It runs no gmsh. */
 SOFTFALL_API softfall_status softfall_case_check(const softfall_case *c, softfall_error *error);
@@ -303,6 +306,9 @@ SOFTFALL_API softfall_status softfall_figure(const softfall_figures *figures, co
  * in words, the worst first; owned by the figures. */
 SOFTFALL_API int softfall_figures_grade(const softfall_figures *figures);
 SOFTFALL_API const char *softfall_figures_verdict(const softfall_figures *figures);
+/* Returns the part of a_max that is certain although the verdict is "do not use" (1: a_max can only be too
+ * low; 0: nothing is certain). */
+SOFTFALL_API double softfall_figures_sure(const softfall_figures *figures);
 /* Returns how the run ended: "rebound", "finished", a sentence, or "" if it has not ended; owned by the
  * figures. */
 SOFTFALL_API const char *softfall_figures_status(const softfall_figures *figures);

@@ -147,7 +147,7 @@ class Campaign:
     """A plan and the folder of its store."""
 
     def __init__(self, plan: Plan, folder: Path, retry: bool = False, tell: Callable[[str], None] = print) -> None:
-        self.plan, self.folder, self.retry, self._tell = plan, folder, retry, tell
+        self.plan, self.folder, self.retry, self.tell = plan, folder, retry, tell
         self.store: Store | None = None
         self.simulated = self.found = 0
         self._tasks: dict[str, Task] = {}
@@ -293,7 +293,7 @@ class Campaign:
     def _progress(self, table: Table, start: float) -> None:
         spent, left = time.monotonic() - start, len(self.open_keys(table))
         if self.simulated:
-            self._tell(f"{len(table.rows) - table.count('open')} of {len(table.rows)} runs; {spent:.0f} s so far, about {duration(spent / self.simulated * left)} to go")
+            self.tell(f"{len(table.rows) - table.count('open')} of {len(table.rows)} runs; {spent:.0f} s so far, about {duration(spent / self.simulated * left)} to go")
 
     def check_unchanged(self, table: Table) -> None:
         """Raises an Error if a row no longer has the inputs that it had at the beginning."""

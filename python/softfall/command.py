@@ -21,6 +21,7 @@ from . import library, programs
 from .errors import Error, InputError, lacking
 
 COMMANDS = {  # module within the package, and what the command does
+    "cfh": ("cfh_command", "find the critical fall height: where a_max or HIC reach their limits"),
     "foam": ("foam_command", "convert foam cards of other solvers and back, and show foams"),
     "open": ("open_command", "open the workbench in the browser: form, live sliders, curves, the drop in 3-D"),
     "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
@@ -32,14 +33,13 @@ COMMANDS = {  # module within the package, and what the command does
 }
 PROGRAMS = {  # words that are handed over to the program softfall-WORD, and what it does
     "batch": "run a group of a batch, as an engine (Snakemake, Slurm) starts it",
-    "cfh": "find the critical fall height: where a_max or HIC reach their limits",
     "fit": "identify a foam from compression tests or from drops",
     "new": "make a folder with a case that runs as it stands",
     "post": "compute figures, curves and pages from results.h5",
     "pre": "build the model of a drop from a case",
     "solve": "simulate the drop of a model",
 }
-RESUME = ("protocol", "rows", "run", "sweep")  # commands that resume where they were interrupted
+RESUME = ("cfh", "protocol", "rows", "run", "sweep")  # commands that resume where they were interrupted
 USAGE = 64  # exit code of a wrong command line, as of the C programs
 
 
@@ -66,6 +66,10 @@ class _Once(argparse._StoreAction):
         super().__call__(parser, namespace, values, option_string)
 
 
+class WrongOption(InputError):
+    """The command line has an option or an argument that the command does not take, or lacks one."""
+
+
 class Parser(argparse.ArgumentParser):
     """A parser with the help and the exit code of the C programs; `options` takes the options of a command."""
 
@@ -86,8 +90,8 @@ class Parser(argparse.ArgumentParser):
         return super().parse_args(arguments, namespace)
 
     def error(self, message: str) -> Any:
-        """Ends the program with a sentence about the command line."""
-        self.exit(USAGE, f"{self.prog}: {message}\nTry `{self.prog} --help' for more information.\n")
+        """Raises the InputError of a wrong command line."""
+        raise WrongOption(message, USAGE)
 
 
 def _help() -> str:
@@ -214,6 +218,8 @@ def main(arguments: Sequence[str]) -> int:
     except Exception as error:
         sentence, code = _failure(error)
         _complain(prog, sentence)
+        if isinstance(error, WrongOption):
+            print(f"Try `{prog} --help' for more information.", file=sys.stderr)
         try:
             sys.stdout.flush()
         except OSError:  # a full disk: nothing more is written at the end

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes as c
 import functools
 import hashlib
+import itertools
 import json
 import math
 from pathlib import Path
@@ -34,6 +35,7 @@ class DropFigures(NamedTuple):
     grade: int
     verdict: str
     status: str
+    sure: float = 0.0  # part of a_max that is certain although the verdict is "do not use"
 
 
 class Run(NamedTuple):
@@ -65,6 +67,8 @@ def _load() -> c.CDLL:
     lib.softfall_figures_list.restype = c.POINTER(_Quantity)
     for name in ("softfall_figures_grade", "softfall_figures_free", "softfall_drop_free", "softfall_model_free", "softfall_case_free", "softfall_text_free"):
         getattr(lib, name).argtypes = [c.c_void_p]
+    lib.softfall_figures_sure.restype, lib.softfall_figures_sure.argtypes = c.c_double, [c.c_void_p]
+    lib.softfall_case_data_end.restype, lib.softfall_case_data_end.argtypes = c.c_double, [c.c_void_p, c.c_int]
     lib.softfall_case_has_files.argtypes = [c.c_void_p, c.c_char_p]
     return lib
 
@@ -141,6 +145,15 @@ class Inputs:
         first = _load().softfall_case_drop_get(self._case, 1)
         return [bool(_load().softfall_case_drop_get(self._case, k).counted) for k in range(1, first.drops + 1)]
 
+    def is_alike(self) -> bool:
+        """True if all drops of the series have the missile of the case, but for their intervals."""
+        return not any(_load().softfall_case_drop_get(self._case, k).own for k in range(1, len(self.counted()) + 1))
+
+    def data_ends(self) -> list[float]:
+        """Returns the strain at which the data of the foam end, of each layer."""
+        ends = (float(_load().softfall_case_data_end(self._case, k)) for k in itertools.count())
+        return list(itertools.takewhile(lambda end: not math.isnan(end), ends))
+
     def run(self, share: str, section: bool = False) -> Run:
         """Simulates the drop, or the series, on one thread; meshes are shared in a folder. A failure has `files`, if they are known.
 
@@ -194,7 +207,7 @@ def _figures(drop: c.c_void_p) -> DropFigures:
             library._call("softfall_figure", figures, listed[k].name, c.byref(value))
             found[listed[k].name.decode()] = value.value
         return DropFigures(found, int(lib.softfall_figures_grade(figures)), lib.softfall_figures_verdict(figures).decode(errors="replace"),
-                           lib.softfall_figures_status(figures).decode(errors="replace"))
+                           lib.softfall_figures_status(figures).decode(errors="replace"), float(lib.softfall_figures_sure(figures)))
     finally:
         lib.softfall_figures_free(figures)
 
@@ -204,7 +217,7 @@ def judge(drops: Sequence[DropFigures], counted: Sequence[bool]) -> DropFigures:
 
     >>> one, two = (DropFigures({"hic": hic, "steps": 3.0}, grade, "good", "rebound") for hic, grade in ((100.0, 0), (300.0, 1)))
     >>> judge([one, two], [False, True])
-    DropFigures(figures={'hic': 300.0, 'steps': 6.0}, grade=1, verdict='drop 2: good', status='rebound')
+    DropFigures(figures={'hic': 300.0, 'steps': 6.0}, grade=1, verdict='drop 2: good', status='rebound', sure=0.0)
     """
     if len(drops) == 1:
         return drops[0]
@@ -212,7 +225,7 @@ def judge(drops: Sequence[DropFigures], counted: Sequence[bool]) -> DropFigures:
     figures = {key: sum(drop.figures[key] for drop in drops) if key in _SUMS else
                sum(drop.figures[key] for drop, counts in zip(drops, counted) if counts) / number for key in drops[0].figures}
     worst = max(range(len(drops)), key=lambda k: (drops[k].grade, -k))
-    return DropFigures(figures, drops[worst].grade, f"drop {worst + 1}: {drops[worst].verdict}", drops[-1].status)
+    return DropFigures(figures, drops[worst].grade, f"drop {worst + 1}: {drops[worst].verdict}", drops[-1].status, min(drop.sure for drop in drops))
 
 
 def nine_digits(value: float) -> float:

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The drops of a protocol: simulated by the programs, or read from the files of a laboratory."""
+"""The drops of a protocol that are simulated: those whose curves are shown by the programs, draws of a foam in memory."""
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import math
@@ -14,14 +13,16 @@ from typing import Any, Iterable, Mapping
 
 import numpy as np
 
-from . import programs
+from . import cfh_command, memory, programs
 from .array import Array
 from .case import Case
 from .curves import Hic, hic
 from .drop import Verdict, later_results, read_results
 from .errors import Error, InputError, NumericError, failure
-from .protocol import Condition, Figure, Position, Protocol, kilograms, speed
+from .plan import Limit
+from .protocol import Condition, Figure, Position, Protocol, speed
 from .study import Table, sweep
+from .sweep_command import choose_views
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,7 @@ class Drop:
     mesh_error: float = 0.0  # expected of a_max, simulated; the figures fall short by it
     reading: str = ""  # how a measured record was read
     speed: float = math.nan  # m/s, as measured before the impact
+    foam: str = ""  # the file of the draw whose curve it has
 
     @property
     def is_usable(self) -> bool:
@@ -181,8 +183,8 @@ def simulate(p: Protocol, pad: Case, output: Path, posterior: str | None = None,
              **options: Any) -> Drops:
     """Simulates the drops of a protocol on the pad of a case, below `output`. What is there is used again.
 
-    `posterior`: a folder of draws of the foam. `beside`: measured drops, from whose heights a place of a search is simulated, too. `options` are those of softfall-sweep and softfall-cfh: jobs, threads, engine, profile; `views` is
-    softfall-sweep's, and makes the view at a critical height.
+    `posterior`: a folder of draws of the foam. `beside`: measured drops, from whose heights a place of a search is simulated, too. `options`: jobs, engine and profile of searches and of draws, threads; `views`
+    chooses drops at each position as `softfall sweep` does, and makes the view at a critical height.
     """
     made = Drops()
     output.mkdir(parents=True, exist_ok=True)
@@ -290,62 +292,56 @@ def _run_series(p: Protocol, case: Case, spot: Spot, folder: Path, options: Mapp
             if failure and (not path.exists() or read_results(path).figures["status"] not in ("finished", "rebound")):
                 drops.append(Drop(spot, number, str(path), grade="do not use", note=failure))
                 continue
-            result = read_results(path)
-            result.post(filter=int(p.filter))
-            drops.append(Drop(spot, number, str(path), take_figures(p.figures, result.figures, result.curve()), str(result.verdict),
-                              "; ".join(result.verdict.remarks), result.curve(), mesh_error=_mesh_error(result.verdict)))
+            drops.append(_result(p, spot, number, path))
             if options.get("views"):  # they have all fields
                 drops[-1].view = read_results(path, output=place / f"view-{number}").report().parent
     return drops
 
 
-SEARCH_FILTER, NO_LIMIT = 1000, 1e6  # of softfall-cfh; a limit that no drop reaches
+SEARCH_FILTER, NO_LIMIT = 1000, 1e6  # of softfall-cfh and of draws; a limit that no drop reaches
+OF_THE_DROP = (4, 5)  # exit codes of a model or a solution that fails: others end the command
 
 
 def search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
            options: Mapping[str, Any], limits: tuple[float | None, float | None] | None = None, shown: bool = True) -> Search:
-    """Runs softfall-cfh below a folder, and reads its drops if they are shown. `limits` of a_max (g) and HIC are those of the protocol unless given."""
+    """Searches the critical height below a folder, and simulates its drops with their curves if they are shown. `limits` of a_max (g) and HIC are those of the protocol unless given."""
     folder /= "heights"
     folder.mkdir(parents=True, exist_ok=True)
     a_max, hic_value = limits or (p.limit_of("a_max_g"), p.limit_of("hic"))
-    given = {"limit_g": a_max or NO_LIMIT, "limit_hic": hic_value or NO_LIMIT, "posterior": posterior,
-             "force": (folder / "cfh.json").exists(), **options, "views": None}
-    programs.run("cfh", [str(case.path), f"--output={folder}", *(f"--set={key}={text}" for key, text in case.overrides.items()),
-                         *programs.options(given)])
+    given = {"limit_g": a_max or NO_LIMIT, "limit_hic": hic_value or NO_LIMIT, "force": True}
+    sets, threads = [f"--set={key}={text}" for key, text in case.overrides.items()], options.get("threads")
+    if posterior:  # columns of every draw at every height, for the advice
+        programs.run("cfh", [str(case.path), f"--output={folder}", *sets, *programs.options({**given, "posterior": posterior, **options, "views": None})])
+    else:
+        words = [f"--output={folder}", *sets, *programs.options({**given, "jobs": options.get("jobs")}), "--", str(case.path)]
+        cfh_command.run(cfh_command.parser("softfall cfh").parse_args(words), lambda text: None, f"critical height of {p.path}")
     found = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
     height = found.summary["critical_fall_height"].get("height_m")
     if shown:
-        found.drops = [_point(p, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs") for point in found.summary["points"]]
+        found.drops = [_point(p, case, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs", threads) for point in found.summary["points"]]
     if options.get("views") and height:
-        drop = case.copy()
-        drop["missile.velocity"] = f"{speed(height):.12g} m/s"
-        with contextlib.suppress(NumericError):  # a height between drops that worked may be one at which the foam locks up
-            found.view = drop.run(threads=options.get("threads"), output=folder / "view", force=True).report().parent
+        found.view = _view(_case_of(case, Spot(condition.name, position.name, height)), folder / "runs", threads)  # None: the foam may lock up between drops that worked
     return found
 
 
-def _point(p: Protocol, spot: Spot, point: Mapping[str, Any], runs: Path) -> Drop:
-    """Returns a drop of a search. Its curve is of those results of its height, also of earlier inputs, that have its figures."""
-    drop = Drop(spot, 1, "", grade="do not use" if point["failed"] else point["grade"] or "", note=point["note"] or "")
+def _point(p: Protocol, case: Case, spot: Spot, point: Mapping[str, Any], runs: Path, threads: int | None) -> Drop:
+    """Returns a drop of a search, simulated once more for its curve if it can be used; its grade is that of the search."""
+    drop = Drop(spot, 1, "", grade="do not use" if point["failed"] else point["grade"], note=point["note"] or "")
     if point["failed"]:
         return drop
-    drop.figures = take_figures(p.figures, {key: value for key, value in point.items() if isinstance(value, (int, float))}, None)
-    for path in runs.glob(f"h{spot.height:.4g}m-*/results.h5"):
-        kept = re.search(r"^a_max_g (\S+)$", path.with_name("figures.txt").read_text(encoding="utf-8"), re.M) if path.with_name("figures.txt").exists() else None
-        if kept and abs(float.fromhex(kept.group(1)) / point["a_max_g"] - 1) < 1e-7:
-            drop.source = str(path)
-            drop.figures, drop.curve, drop.mesh_error = _read(p, path)
-    return drop
-
-
-def _read(p: Protocol, path: Path) -> tuple[dict[str, float], tuple[Any, Any], float]:
-    """Returns the figures, the curve and the expected error of the mesh of results."""
+    one = _case_of(case, spot)
+    one.update(text.split("=", 1) for text in memory.LEAN)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        result = read_results(path)
-        result.post(filter=int(p.filter))
-        curve = result.curve()
-        return take_figures(p.figures, result.figures, curve), curve, _mesh_error(result.verdict)
+        return replace(_result(p, spot, 1, Path(one.run(threads=threads, runs=runs).results)), grade=drop.grade, note=drop.note)
+
+
+def _result(p: Protocol, spot: Spot, number: int, path: Path) -> Drop:
+    """Returns the drop of results, with figures and curve by the filter of the protocol."""
+    result = read_results(path)
+    result.post(filter=int(p.filter))
+    curve, verdict = result.curve(), result.verdict
+    return Drop(spot, number, str(path), take_figures(p.figures, result.figures, curve), str(verdict), "; ".join(verdict.remarks), curve, mesh_error=_mesh_error(verdict))
 
 
 def _beside(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, there: Search, measured: Drops | None,
@@ -358,56 +354,93 @@ def _beside(p: Protocol, case: Case, condition: Condition, position: Position, f
 
 def _sweep(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
            draws: int | None, options: Mapping[str, Any]) -> list[Drop]:
+    """Returns a drop from each height with each mass. The draws of a posterior are one drop, whose curve and file are those of the first one that can be used."""
+    unknown = [figure.key for figure in p.figures if figure.key not in memory.figure_keys()]
+    if unknown:
+        raise InputError(f'{p.path}, on {case.path}: unknown figure "{unknown[0]}" of summary.json (docs/formats.md lists them)')
+    spots = [Spot(condition.name, position.name, height, mass) for height in p.heights for mass in p.masses or ("",)]
+    limits = [Limit(figure.label, math.nan if figure.limit is None else figure.limit) for figure in p.figures]
+    words, threads = options.get("views"), options.get("threads")
+    if words:
+        choose_views(words, limits, len(spots))
+    folder.mkdir(parents=True, exist_ok=True)
+    if posterior:
+        rows = _draws(p, case, spots, folder / "sweep", posterior, draws, options)
+        drops = [_of_draws(p, case, spot, rows[spot], folder, threads) for spot in spots]
+    else:
+        drops = [_simulated(p, _case_of(case, spot), spot, folder, threads) for spot in spots]
+    chosen = choose_views(words, limits, len(drops), lambda label: np.array([drop.figures.get(label, math.nan) for drop in drops])) if words else {}
+    for number in chosen:
+        drops[number].view = _view(_case_of(case, drops[number].spot, drops[number].foam), folder, threads)
+    return drops
+
+
+def _case_of(case: Case, spot: Spot, foam: str = "") -> Case:
+    """Returns the case of a spot, with a draw of the foam if one is given."""
+    one = Case(case.path, {**({"material": f"@{foam}"} if foam else {}), **case.overrides})
+    one.update({"missile.velocity": f"{speed(spot.height):.12g} m/s", **({"missile.mass": spot.mass} if spot.mass else {})})
+    return one
+
+
+def _simulated(p: Protocol, case: Case, spot: Spot, runs: Path, threads: int | None) -> Drop:
+    """Simulates a drop, whose results stay below `runs`; one that fails or is not to be used has no figures."""
+    case.update(text.split("=", 1) for text in memory.LEAN)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            drop = _result(p, spot, 1, case.run(threads=threads, runs=runs).results)
+        except Error as error:
+            if error.code not in OF_THE_DROP:
+                raise
+            return Drop(spot, 1, getattr(error, "results", None) or "", grade="do not use", note=str(error))
+    return drop if drop.is_usable else replace(drop, figures={}, curve=None, mesh_error=0.0)
+
+
+def _view(case: Case, runs: Path, threads: int | None) -> Path | None:
+    """Simulates a drop with all fields, and returns the folder of its pages; None: it failed."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            return case.run(threads=threads, runs=runs).report().parent
+        except NumericError:
+            return None
+
+
+def _draws(p: Protocol, case: Case, spots: list[Spot], folder: Path, posterior: str, draws: int | None, options: Mapping[str, Any]) -> dict[Spot, list[dict[str, str]]]:
+    """Simulates all spots with the draws of a posterior, and returns the rows of runs.csv of each spot."""
     factors: list[dict[str, Any]] = [{"key": "missile.velocity", "name": "speed", "values": [f"{speed(h):.12g} m/s" for h in p.heights]}]
     if p.masses:
         factors.append({"key": "missile.mass", "name": "mass", "values": list(p.masses)})
-    if posterior:
-        factors.append({"key": "material", "name": "foam", "posterior": str(Path(posterior).absolute()),
-                        **({"draws": draws} if draws else {})})
-    figures: list[dict[str, Any]] = [{"key": figure.key} if figure.limit is None else {"key": figure.key, "limit": figure.value_of(figure.limit)}
-                                     for figure in p.figures]
-    plan = {"case": str(case.path), "set": [f"{key}={text}" for key, text in case.overrides.items()], "factors": factors, "figures": figures}
-    plan = {key: value for key, value in plan.items() if value != []}
-    folder.mkdir(parents=True, exist_ok=True)
-    folder /= "sweep"
+    factors.append({"key": "material", "name": "foam", "posterior": str(Path(posterior).absolute()), **({"draws": draws} if draws else {})})
+    figures: list[dict[str, Any]] = [{"key": figure.key} if figure.limit is None else {"key": figure.key, "limit": figure.value_of(figure.limit)} for figure in p.figures]
+    plan: dict[str, Any] = {"case": str(case.path), "factors": factors, "figures": figures}
+    if case.overrides:
+        plan["set"] = [f"{key}={text}" for key, text in case.overrides.items()]
     try:
-        sweep(plan, output=folder, **options)
+        sweep(plan, output=folder, **{name: options.get(name) for name in ("jobs", "engine", "profile")})
     except Error as error:  # a user does not know the plan that is written here
-        raise failure(re.sub(rf"softfall-sweep: {re.escape(str(folder))}\.cfg:\d+: ", f"{p.path}, on {case.path}: ", str(error)), error.code) from None
-    return _rows(p, condition, position, folder)
-
-
-def _rows(p: Protocol, condition: Condition, position: Position, folder: Path) -> list[Drop]:
-    """Returns the rows of runs.csv as drops; the draws of a posterior are one drop, whose curve is that of the first."""
+        raise failure(re.sub(rf"{re.escape(str(folder))}\.cfg:\d+: ", f"{p.path}, on {case.path}: ", str(error)), error.code) from None
     table = Table(folder / "runs.csv")
-    views = {view["id"]: folder / "views" / view["folder"]
-             for view in json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["views"] if view["folder"]}
-    drops: dict[Spot, Drop] = {}
-    for row in table.rows:
-        cell = dict(zip(table.columns, row))
-        height = min(p.heights, key=lambda h: abs(speed(h) - float(cell["speed (m/s)"])))
-        spot = Spot(condition.name, position.name, height, min(p.masses, key=lambda text: abs(kilograms(text) - float(cell["mass (kg)"])), default=""))
-        results = folder / "runs" / cell["folder"] / "results.h5" if cell["folder"] else None
-        usable = cell["run_status"] == "done" and cell["grade"] != "do not use"
-        drop = drops.setdefault(spot, Drop(spot, 1, str(results or ""), grade=cell["grade"] or "do not use", note=cell["message"]))
-        drop.view = drop.view or views.get(int(cell["id"]))
-        if not usable:
-            drop.note = cell["message"] or "do not use"
-            drop.grade = "do not use"
-            continue
-        if drop.curve is None and results:
-            drop.figures, drop.curve, drop.mesh_error = _read(p, results)
-        if "foam" in cell and results and any(figure.least_window for figure in p.figures):
-            drop.draws[cell["foam"]] = _read(p, results)[0]
-        elif "foam" in cell:
-            drop.draws[cell["foam"]] = take_figures(p.figures, {key: float(text) for key, text in cell.items()
-                                                                 if key in {f.key for f in p.figures} and text}, None)
-    for drop in drops.values():
-        if len(drop.draws) > 1:
-            drop.note = "; ".join(part for part in (f"medians of {len(drop.draws)} draws; curve and file are of the first", drop.note) if part)
-            drop.figures = {key: float(np.median([values[key] for values in drop.draws.values() if key in values])) for key in drop.figures
-                            if any(key in values for values in drop.draws.values())}
-    return list(drops.values())
+    rows = [dict(zip(table.columns, row)) for row in table.rows]
+    count = len(rows) // len(spots)  # the foam is the last factor, and changes fastest
+    return {spot: rows[k * count:(k + 1) * count] for k, spot in enumerate(spots)}
+
+
+def _of_draws(p: Protocol, case: Case, spot: Spot, rows: list[dict[str, str]], runs: Path, threads: int | None) -> Drop:
+    """Returns the drop of a spot with the medians of its draws."""
+    usable = [row for row in rows if row["run_status"] == "done" and row["grade"] != "do not use"]
+    if not usable:
+        return Drop(spot, 1, "", grade="do not use", note=rows[-1]["message"] or "do not use", foam=rows[0]["foam"])
+    made = _simulated(p, _case_of(case, spot, usable[0]["foam"]), spot, runs, threads)
+    made.foam = usable[0]["foam"]
+    of_curve = p.filter != SEARCH_FILTER or any(figure.least_window for figure in p.figures)
+    for row in usable:
+        numbers = {figure.key: float(row[figure.key]) for figure in p.figures if row[figure.key]}
+        made.draws[row["foam"]] = _simulated(p, _case_of(case, spot, row["foam"]), spot, runs, threads).figures if of_curve else take_figures(p.figures, numbers, None)
+    if len(made.draws) > 1:
+        made.note = "; ".join(part for part in (f"medians of {len(made.draws)} draws; curve and file are of the first", made.note) if part)
+        made.figures = {key: float(np.median([values[key] for values in made.draws.values() if key in values])) for key in made.figures}
+    return made
 
 
 def figures_of(drops: Iterable[Drop], key: str, counted: Iterable[int]) -> float:

@@ -8,6 +8,7 @@ import math
 from typing import Any, Mapping
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from .protocol import Figure, Protocol
 from .protocol_drops import Drop, Drops, Search, figures_of
@@ -114,14 +115,13 @@ def _draw_place(ax: Any, p: Protocol, figure: Figure, place: tuple[str, str], pa
 
 
 def _draw_search(ax: Any, figure: Figure, search: Search, colour: str, prefix: str) -> None:
-    """Draws the fit of softfall-cfh through the drops that it uses, and the band of the draws if there are any."""
+    """Draws a curve through the drops of a search, and the band of the draws if there are any."""
     key = {"a_max_g": "a_max", "hic": "HIC"}[figure.key]
-    fit = next(one["fit"] for one in search.summary["criteria"] if one["criterion"] == key)
-    used = [point["height_m"] for point in search.summary["points"] if point[f"{key.lower()}_residual"] is not None]
-    if fit["centre"] is not None and not fit["bracketed"] and len(used) > 1:
-        h = np.geomspace(min(used), max(used), 100)
-        d = np.log(h) - fit["centre"]
-        ax.plot(h, [figure.of(float(value)) for value in np.exp(fit["c0"] + fit["c1"] * d + fit["c2"] * d**2)], "--", color=colour, lw=1.2)
+    usable = [(point["height_m"], point[figure.key]) for point in search.summary["points"] if point[figure.key]]
+    if len(usable) > 1:
+        x, y = np.log(np.array(usable).T)
+        h = np.linspace(x[0], x[-1], 100)
+        ax.plot(np.exp(h), [figure.of(float(value)) for value in np.exp(PchipInterpolator(x, y)(h))], "--", color=colour, lw=1.2)
     band = search.folder / "cfh_band.csv"
     if not band.exists() or "draws" not in (search.summary["posterior"] or {}):  # it may be of an earlier run
         return

@@ -31,7 +31,7 @@ class Refinement(dict[str, Refined]):
 
 
 def extrapolate(fine: float, coarse: float, ratio: float = 2.0, cells: float = math.inf) -> Refined:
-    """Returns the value at a spacing of zero from those at h and `ratio` h, as softfall-sweep with `refine`. `cells`: the number of
+    """Returns the value at a spacing of zero from those at h and `ratio` h, as `softfall sweep` with `refine`. `cells`: the number of
     cells at h over that at `ratio` h, if it is known. A pair that tells no value is an InputError.
 
     >>> extrapolate(95.274, 93.858)

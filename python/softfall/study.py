@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""softfall-sweep and softfall-fit compression: many drops by a plan, a material from compression tests."""
+"""softfall sweep and softfall-fit compression as functions: many drops by a plan, a material from compression tests."""
 from __future__ import annotations
 
 import csv
@@ -89,15 +89,17 @@ def _prepare(what: Any, output: str | os.PathLike[str] | None, ending: str) -> t
 
 
 def sweep(plan: str | os.PathLike[str] | Mapping[str, Any], output: str | os.PathLike[str] | None = None, **options: Any) -> Any:
-    """Runs softfall-sweep (docs/campaigns.md) and returns runs.csv: a row for each drop, a column for each factor and figure.
+    """Runs `softfall sweep` (docs/campaigns.md) in this process and returns runs.csv: a row for each drop, a column for each factor and figure.
 
     `plan`: a plan file, or a dict with its words, such as {"case": "case.cfg", "factors": [{"key": "missile.velocity",
     "values": ["5.2 m/s", "5.4 m/s"]}]}, whose paths begin beside `output`. `output`: a folder, by default PLAN-sweep in the present
-    one. `options` are those of the program: jobs=2, threads=2, retry=True. A pandas DataFrame if pandas is installed, else a `Table`.
+    one. `options` are those of the command: jobs=2, views="worst", retry=True. A pandas DataFrame if pandas is installed, else a `Table`.
     After Ctrl-C the same call resumes; drops that are done are not run again.
     """
+    from . import sweep_command  # with scipy and matplotlib, which take a second
     config, folder = _prepare(plan, output, "sweep")
-    programs.run("sweep", [str(config), f"--output={folder}", *programs.options({"force": (folder / "runs.csv").exists(), **options})])
+    words = [f"--output={folder}", *programs.options({"force": (folder / "runs.csv").exists(), **options}), "--", str(config)]
+    sweep_command.run(sweep_command.parser("softfall sweep").parse_args(words), lambda text: None, f"softfall.sweep({str(config)!r}, {str(folder)!r})")
     return read_table(folder / "runs.csv")
 
 

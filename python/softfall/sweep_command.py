@@ -11,11 +11,12 @@ import shlex
 import sys
 import warnings
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any, Callable, Iterator, Sequence
 
 import numpy as np
 
 from . import effects, library, memory, output as output_files, rows_command, sweep_page
+from .array import Array
 from .campaign import ANVIL, REFINED, Campaign, Table, estimate
 from .case import Case
 from .command import Parser, say
@@ -23,7 +24,7 @@ from .drop import read_results
 from .effects import Statements
 from .errors import Error, InputError, NumericError, SoftfallWarning
 from .memory import GRADES
-from .plan import Plan
+from .plan import Limit, Plan
 from .progress import duration
 from .store import NAME
 
@@ -50,11 +51,14 @@ def parser(prog: str) -> Parser:
     add("--profile", metavar="PROFILE", help="with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall")
     add("--per-job", metavar="N", type=int, help="with --engine snakemake: rows of a job (default: as many as take three minutes)")
     add("--retry", action="store_true", help="simulate drops again that failed earlier")
+    add("-t", "--threads", help=argparse.SUPPRESS)  # of the earlier softfall-sweep
     return made
 
 
-def run(options: argparse.Namespace) -> int:
-    """Runs the command and returns its exit code."""
+def run(options: argparse.Namespace, tell: Callable[[str], None] = say, command: str = "") -> int:
+    """Runs the command and returns its exit code. `command`: what was called, for the report, if it was not the command line."""
+    if options.threads is not None:
+        raise InputError(f"--threads={options.threads}: each drop takes one thread; give --jobs, the number of drops side by side")
     if options.jobs is not None and not 1 <= options.jobs <= MOST_JOBS:
         raise InputError(f"--jobs {options.jobs} is outside of 1 to {MOST_JOBS}")
     if options.per_job is not None and options.per_job < 1:
@@ -63,23 +67,24 @@ def run(options: argparse.Namespace) -> int:
     jobs = options.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0)))
     memory.hold_units()
     folder, plan = Path(options.output), Plan(options.plan, options.yes)
-    views = _choose_views(options.views, plan, None) if options.views is not None else {}
+    if options.views is not None:
+        choose_views(options.views, plan.figures, plan.rows)
     _check_folder(folder, plan, options)
     plan.check()
     if plan.refine:
         plan.check(coarse=True)
-    campaign = Campaign(plan, folder, options.retry, say)
+    campaign = Campaign(plan, folder, options.retry, tell)
     if (folder / NAME).exists():
         campaign.open()
     try:
-        return _run(campaign, options, jobs, bool(views) or options.views is not None)
+        return _run(campaign, options, jobs, command or shlex.join(["softfall", *sys.argv[1:]]))
     finally:
         campaign.close()
 
 
-def _run(campaign: Campaign, options: argparse.Namespace, jobs: int, with_views: bool) -> int:
+def _run(campaign: Campaign, options: argparse.Namespace, jobs: int, command: str) -> int:
     plan, folder = campaign.plan, campaign.folder
-    _print_table(plan)
+    _print_table(plan, campaign.tell)
     seconds, basis = estimate(plan, campaign.store, options.dry_run)
     if plan.rows > plan.allowed:
         hours = f"about {duration(seconds * plan.rows / jobs)}" if math.isfinite(seconds) else "a time that is not known"
@@ -88,7 +93,7 @@ def _run(campaign: Campaign, options: argparse.Namespace, jobs: int, with_views:
     table = campaign.look()
     count = len(campaign.open_keys(table))
     cost = f" of about {seconds:.2g} s of one core: about {duration(seconds * count / jobs)} with {jobs} at a time" if math.isfinite(seconds) else "; what they cost is not known"
-    say(f"{count} open runs" + (f"{cost if count else ''}\n  ({basis})" if basis else ""))
+    campaign.tell(f"{count} open runs" + (f"{cost if count else ''}\n  ({basis})" if basis else ""))
     if options.dry_run:
         return 0
     campaign.open()
@@ -109,7 +114,7 @@ def _run(campaign: Campaign, options: argparse.Namespace, jobs: int, with_views:
             table.write(folder / "runs.csv")
         raise
     table.write(folder / "runs.csv")
-    _report(campaign, table, options, with_views)
+    _report(campaign, table, options.views, command)
     return 0
 
 
@@ -132,38 +137,38 @@ def _check_folder(folder: Path, plan: Plan, options: argparse.Namespace) -> None
         raise InputError(f"{folder} already holds {there[0]}: give another directory, or --force to replace it")
 
 
-def _print_table(plan: Plan) -> None:
+def _print_table(plan: Plan, tell: Callable[[str], None]) -> None:
     for k, factor in enumerate(plan.factors):
-        say(f"  {factor.name:<36} {plan.describe(k)}")
-    say(f"{plan.rows} runs\n  id, {', '.join(factor.heading for factor in plan.factors)}")
+        tell(f"  {factor.name:<36} {plan.describe(k)}")
+    tell(f"{plan.rows} runs\n  id, {', '.join(factor.heading for factor in plan.factors)}")
     for row in range(min(plan.rows, TABLE_ROWS)):
-        say(f"  {row + 1}, {', '.join(factor.text(plan.value(k, row)) for k, factor in enumerate(plan.factors))}")
+        tell(f"  {row + 1}, {', '.join(factor.text(plan.value(k, row)) for k, factor in enumerate(plan.factors))}")
     if plan.rows > TABLE_ROWS:
-        say("  ...")
+        tell("  ...")
 
 
 # ---- views
 
-def _choose_views(words: str, plan: Plan, table: Table | None) -> dict[int, list[str]]:
-    """Returns the rows to be looked at with the reasons; without a table only the words are checked."""
+def choose_views(words: str, figures: Sequence[Limit], runs: int, values: Callable[[str], Array] | None = None) -> dict[int, list[str]]:
+    """Returns the runs to be looked at, from 0, with the reasons. `values` returns a figure of all runs, NaN where one is not usable; without it the words are checked."""
     chosen: dict[int, list[str]] = {}
     for word in words.split(","):
         if word == "all":
-            for row in range(plan.rows):
+            for row in range(runs):
                 chosen.setdefault(row, []).append("all")
         elif word in ("worst", "limit"):
-            limits = [limit for limit in plan.figures if word == "worst" or not math.isnan(limit.limit)]
+            limits = [limit for limit in figures if word == "worst" or not math.isnan(limit.limit)]
             if not limits:
                 raise InputError("--views limit: no figure of the plan has a limit")
-            for limit in limits if table else ():
-                values = table.values(limit.figure) if table else np.empty(0)
-                merit = values if word == "worst" else -np.abs(values - limit.limit)
+            for limit in limits if values else ():
+                found = values(limit.figure) if values else np.empty(0)
+                merit = found if word == "worst" else -np.abs(found - limit.limit)
                 if np.isfinite(merit).any():
                     chosen.setdefault(int(np.nanargmax(merit)), []).append(f"largest {limit.figure}" if word == "worst" else f"{limit.figure} nearest to its limit")
-        elif word.isascii() and word.isdigit() and 1 <= int(word) <= plan.rows:
+        elif word.isascii() and word.isdigit() and 1 <= int(word) <= runs:
             chosen.setdefault(int(word) - 1, []).append("asked for")
         else:
-            raise InputError(f'--views: "{word}" is neither worst, limit, all nor the id of one of the {plan.rows} runs')
+            raise InputError(f'--views: "{word}" is neither worst, limit, all nor the id of one of the {runs} runs')
     if len(chosen) > MOST_VIEWS:
         raise InputError(f"--views: more than {MOST_VIEWS} runs")
     return chosen
@@ -191,7 +196,7 @@ def _make_views(campaign: Campaign, chosen: dict[int, list[str]]) -> Iterator[di
 
 # ---- report
 
-def _report(campaign: Campaign, table: Table, options: argparse.Namespace, with_views: bool) -> None:
+def _report(campaign: Campaign, table: Table, words: str | None, command: str) -> None:
     plan, folder = campaign.plan, campaign.folder
     anvil = np.array([row.state == "failed" and ANVIL in row.message for row in table.rows])
     is_open = np.array([row.state == "open" for row in table.rows])
@@ -200,12 +205,12 @@ def _report(campaign: Campaign, table: Table, options: argparse.Namespace, with_
         scatter = {"a_max_g": "a_max_scatter", "hic": "hic_scatter"}.get(limit.figure)
         said.append(effects.statements(plan, limit.limit, table.values(limit.figure), anvil=anvil, is_open=is_open,
                                        scatter=table.values(scatter) if scatter else np.zeros(plan.rows)))
-    views = list(_make_views(campaign, _choose_views(options.views, plan, table))) if with_views else []
+    views = list(_make_views(campaign, choose_views(words, plan.figures, plan.rows, table.values))) if words is not None else []
     usable = sum(row.is_usable for row in table.rows)
     facts = {"done": table.count("done"), "failed": table.count("failed"), "open": table.count("open"), "usable": usable,
              "remarks": sum(row.judged is not None and row.judged.grade == 1 for row in table.rows),
              "do_not_use": sum(row.judged is not None and GRADES[row.judged.grade] == "do not use" for row in table.rows), "judged_by": plan.series_text(),
-             "views": views, "program": f"softfall sweep {library.version()}", "command": shlex.join(["softfall", *sys.argv[1:]])}
+             "views": views, "program": f"softfall sweep {library.version()}", "command": command}
     sweep_page.write(table, said, folder, facts)
     output_files.write(folder / "sweep.json", json.dumps(_summary(table, said, facts), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
     if facts["judged_by"]:
@@ -260,21 +265,21 @@ def _figure(plan: Plan, number: int, s: Statements) -> dict[str, Any]:
 
 
 def _print_result(campaign: Campaign, table: Table, said: list[Statements], facts: dict[str, Any]) -> None:
-    plan = table.plan
+    plan, tell = table.plan, campaign.tell
     answer = sweep_page.answer(table)
-    say(f"{answer[0].upper()}{answer[1:]}")
-    say(f"{plan.rows} runs: {facts['done']} done, {facts['failed']} failed, {facts['open']} open; {facts['do_not_use']} of the done are not to be used")
+    tell(f"{answer[0].upper()}{answer[1:]}")
+    tell(f"{plan.rows} runs: {facts['done']} done, {facts['failed']} failed, {facts['open']} open; {facts['do_not_use']} of the done are not to be used")
     if facts["judged_by"]:
-        say(f"  each of a series of drops, judged by {facts['judged_by']}")
+        tell(f"  each of a series of drops, judged by {facts['judged_by']}")
     failed = [(k + 1, row.message) for k, row in enumerate(table.rows) if row.state == "failed"]
     for k, message in failed[:5]:
-        say(f"  run {k} failed: {message}")
+        tell(f"  run {k} failed: {message}")
     if failed[5:]:
-        say(f"  {len(failed) - 5} more in runs.csv; --retry does them again")
+        tell(f"  {len(failed) - 5} more in runs.csv; --retry does them again")
     for limit, s in zip(plan.figures, said):
         if s.surface.names:
             error = s.surface.problem or f"rms error at runs left out {s.surface.left_out_rms:.4g}, Q2 {s.surface.q2:.4f}"
-            say(f"  {limit.figure}: response surface of {len(s.surface.names)} terms, {error}")
-    say(CAUTION)
-    say(f"{campaign.simulated} drops simulated, {campaign.found} were there")
-    say(f"Written: {campaign.folder}/report.html, runs.csv, {'drops.csv, ' if facts['judged_by'] else ''}sweep.json")
+            tell(f"  {limit.figure}: response surface of {len(s.surface.names)} terms, {error}")
+    tell(CAUTION)
+    tell(f"{campaign.simulated} drops simulated, {campaign.found} were there")
+    tell(f"Written: {campaign.folder}/report.html, runs.csv, {'drops.csv, ' if facts['judged_by'] else ''}sweep.json")

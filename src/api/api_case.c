@@ -92,6 +92,14 @@ softfall_case_drop softfall_case_drop_get(const softfall_case *c, int drop) {
                                 data->drop[drop - 1].interval};
 }
 
+double softfall_case_data_end(const softfall_case *c, int layer) {
+    const sf_case *data = &c->data;
+    if (layer < 0 || layer >= (data->layer_count > 0 ? data->layer_count : 1))
+        return NAN;
+    const sf_material *material = data->layer_count > 0 ? &data->layer[layer] : &data->material;
+    return material->law->data_end(material->card);
+}
+
 softfall_status softfall_case_check(const softfall_case *c, softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     for (int k = 0; k < SF_GEOMETRIES && err.status == SF_OK; k++)

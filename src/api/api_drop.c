@@ -308,6 +308,7 @@ struct softfall_figures {
     softfall_quantity figure[SF_FIGURES(ONE)];
     double value[SF_FIGURES(ONE)];
     int grade;
+    double sure; /* -, sf_verdict.sure */
     char status[512], verdict[SF_VERDICT_LINE_SIZE];
 };
 
@@ -341,6 +342,7 @@ static sf_status compute(const sf_results *results, double filter, softfall_figu
             made->value[n++] = sf_figure_number(&sf_figure_at[k], results, &f);
     sf_verdict_compute(results, &f, &limits, &verdict);
     made->grade = (int)verdict.grade;
+    made->sure = verdict.sure;
     sf_verdict_line(&verdict, made->verdict, sizeof made->verdict);
     snprintf(made->status, sizeof made->status, "%s", results->status);
     return SF_OK;
@@ -370,6 +372,10 @@ softfall_status softfall_results_figures(const char *path, double filter, softfa
 
 int softfall_figures_grade(const softfall_figures *figures) {
     return figures->grade;
+}
+
+double softfall_figures_sure(const softfall_figures *figures) {
+    return figures->sure;
 }
 
 const char *softfall_figures_verdict(const softfall_figures *figures) {

@@ -37,7 +37,7 @@ def test_without_pandas_a_sweep_is_a_plain_table(monkeypatch, drop):
 
 
 def test_wrong_plans_are_refused(tmp_path):
-    with pytest.raises(softfall.InputError, match="softfall-sweep: the file nowhere.cfg cannot be read"):
+    with pytest.raises(softfall.InputError, match="^the file nowhere.cfg cannot be read"):
         softfall.sweep("nowhere.cfg")
     with pytest.raises(softfall.InputError, match="a dict needs output"):
         softfall.sweep(SPEEDS)
@@ -45,8 +45,10 @@ def test_wrong_plans_are_refused(tmp_path):
         softfall.sweep({"case": "pad/case.cfg"}, output="nothing")
     with pytest.raises(softfall.InputError, match='"hicc"'):
         softfall.sweep({**SPEEDS, "figures": [{"key": "hicc"}]}, output="nothing")
-    with pytest.raises(softfall.InputError, match="unrecognized option"):
+    with pytest.raises(softfall.InputError, match="unrecognized arguments: --joobs=2"):
         softfall.sweep(SPEEDS, output="nothing", joobs=2)
+    with pytest.raises(softfall.InputError, match="give --jobs"):
+        softfall.sweep(SPEEDS, output="nothing", threads=2)
     with pytest.raises(TypeError, match="a value is a text"):
         softfall.sweep({**SPEEDS, "title": None}, output="nothing")
     pathlib.Path("mine.cfg").write_text("title = 1;\n")
