@@ -510,7 +510,7 @@ void sf_report_title(const sf_results *r, char *title, size_t size) {
                  r->missile_speed, r->thickness * 1e3);
 }
 
-/* What was dropped on what, by the values of the run. Comments of the case may be older than they are. */
+/* Writes what was dropped on what, by the values of the run, as comments of the case may be older. */
 static void put_subtitle(const page *p, char *text, size_t size) {
     const sf_results *r = p->results;
     sf_origin_key file, base;
