@@ -124,6 +124,7 @@ static void the_programs_compute_the_same_figures_bit_for_bit(void **state) {
     assert_true(figure(ours, "local_collapse") > 0 && figure(ours, "cells") > 100);
     assert_int_equal(softfall_figures_grade(ours), softfall_figures_grade(theirs));
     assert_string_equal(softfall_figures_verdict(ours), softfall_figures_verdict(theirs));
+    assert_true(softfall_figures_sure(ours) == softfall_figures_sure(theirs));
     assert_string_equal(softfall_figures_status(ours), "rebound");
     assert_string_equal(softfall_figures_status(theirs), "rebound");
     program_succeed(&p->folder, "post", "results.h5 -o out"); /* in the units of summary.json */
@@ -379,6 +380,8 @@ static void a_series_has_missiles_of_its_own(void **state) {
                                 &error) != SOFTFALL_OK)
         fail_msg("%s", error.text);
     const softfall_case_drop one = softfall_case_drop_get(whole, 1), two = softfall_case_drop_get(whole, 2);
+    assert_true(softfall_case_data_end(whole, 0) > 0.5 && softfall_case_data_end(whole, 0) < 1);
+    assert_true(isnan(softfall_case_data_end(whole, 1))); /* it has one foam */
     assert_true(one.drops == 2 && !one.counted && !one.own && two.counted && two.own && two.interval > 0);
     assert_int_equal(softfall_model_build(c, NULL, &model, &error), SOFTFALL_OK);
     assert_int_equal(softfall_model_build(later, NULL, &other, &error), SOFTFALL_OK);

@@ -6,7 +6,7 @@ import base64
 import io
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Sequence
 
 import jinja2
 import numpy as np
@@ -78,7 +78,7 @@ def answer(s: Study) -> list[str]:
                     *["g_eff of the rig"] * bool(s.rig.pairs)]
         left_out = [*same, *["errors of the responses, which the draws do not state"] * (s.spread.draws[0].response is None),
                     *["the mesh, whose error is not known"] * math.isnan(s.spread.mesh_error), "the mount of the accelerometer but for what the draws hold of it"]
-        said.append(f"Included: {', '.join(included)}. Not included: {', '.join(left_out)}; single pads and drops")
+        said.append(f"Included: {', '.join(included)}. Not included: {'; '.join([*left_out, 'single pads and drops'])}")
         form = cfh_draws.lowest_form(s.spread, s.spread.parts[cfh_draws.PARTS[2]].at_least)
         said.append(f"The lowest draws have the form {form}" if form else "The draws do not state the form of their curve: posterior.csv of softfall-fit beside their folder does")
         if s.spread.bounded:
@@ -102,11 +102,11 @@ def answer(s: Study) -> list[str]:
     return said
 
 
-def _picture(s: Study) -> bytes:
+def _picture(s: Study, criteria: Sequence[int]) -> bytes:
     from matplotlib.figure import Figure
-    figure = Figure(figsize=(7.6, 3.5), dpi=150, layout="constrained")
+    figure = Figure(figsize=(3.8 * len(criteria), 3.5), dpi=150, layout="constrained")
     good = [p for p in s.points if not p.failed]
-    for c, ax in enumerate(figure.subplots(1, 2)):
+    for c, ax in zip(criteria, figure.subplots(1, len(criteria), squeeze=False)[0]):
         for k, points in enumerate(s.draw_points):
             drops = [p for p in points if not p.failed]
             ax.plot([p.height for p in drops], [p.value[c] for p in drops], "-", color="0.75", lw=0.5, marker=".", ms=2, mew=0, zorder=1,
@@ -126,8 +126,7 @@ def _picture(s: Study) -> bytes:
         ax.set(xlabel="drop height of free fall (m)", ylabel=f"{CRITERIA[c]}{' (g)' if c == 0 else ''}")
         ax.set_ylim(bottom=0)
         ax.margins(x=0.03)
-        if c == 0:
-            ax.legend(fontsize=7, loc="upper left", framealpha=0.9)
+        ax.legend(fontsize=7, loc="upper left", framealpha=0.9)
     image = io.BytesIO()
     figure.savefig(image, format="png", metadata={"Software": None})
     return image.getvalue()
@@ -135,8 +134,8 @@ def _picture(s: Study) -> bytes:
 
 def write(s: Study, folder: Path) -> None:
     """Writes cfh.png and report.html into the folder."""
-    image, share = _picture(s), programs.folder().parent / "share/softfall"
-    output_files.write(folder / "cfh.png", image)
+    share = programs.folder().parent / "share/softfall"
+    output_files.write(folder / "cfh.png", _picture(s, (0, 1)))
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(share), autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
 
     def text(value: float, digits: int) -> str:
@@ -153,5 +152,5 @@ def write(s: Study, folder: Path) -> None:
     kind = "plain" if s.result.verdict != "found" else "good" if s.spread else "fair"
     output_files.write(folder / "report.html", environment.get_template("cfh.html").render(
         title=f"Critical fall height: {Path(s.options.case).resolve().parent.name}", css=(share / "report.css").read_text(encoding="utf-8"), said=said, kind=kind, rows=rows,
-        limits=limits, intervals=intervals, percent=100 * (1 - s.options.quantile), picture=base64.b64encode(image).decode(), rig=bool(s.rig.pairs), ending=ENDINGS[s.ending],
+        limits=limits, intervals=intervals, percent=100 * (1 - s.options.quantile), pictures=[(name, base64.b64encode(_picture(s, (c,))).decode()) for c, name in enumerate(CRITERIA)], rig=bool(s.rig.pairs), ending=ENDINGS[s.ending],
         program=f"softfall cfh {library.version()}", case=s.options.case, simulated=s.simulated, found=s.found))
