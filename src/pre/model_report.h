@@ -24,6 +24,3 @@ char *sf_model_report_text(const sf_model_report *report, sf_error *err);
 /* Finds the entry of that key in such a text; false: there is none. */
 bool sf_model_report_find(const char *text, const char *key, char *name, size_t name_size, char *value,
                           size_t value_size);
-
-/* Expected time of the run on two cores, s, to a factor of 2. */
-double sf_report_seconds(const sf_model *model, const sf_build_report *report);

@@ -34,11 +34,6 @@ void sf_run_record_write(const char *path, const char *results, const sf_results
  * only after it was read: sf_run_folder_is_finished. */
 sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
 
-/* Why two geometry files of one text in two folders are refused. */
-#define SF_CAMPAIGN_SAME_TEXT                                                                                \
-    "the same text in different folders: they may merge different files; make a difference in their text, "  \
-    "a comment for example"
-
 /* Returns the list of the files that the geometries read, at `text` of the HDF5 file `path` (docs/formats.md,
  * geometry_files), from malloc; NULL if there is none. */
 char *sf_campaign_geometry_list(const char *path, const char *text);
@@ -99,10 +94,6 @@ void sf_run_folder_clean(const sf_run_folder *folder);
  * checkpoint. */
 sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err);
-
-/* Writes report.html, view.html and what else softfall-post makes of the results into its folder `report`; of
- * a series what softfall-post series makes. */
-sf_status sf_run_folder_report(const sf_run_folder *folder, sf_error *err);
 
 /* Records SF_INTERRUPTED. */
 sf_status sf_run_folder_interrupted(sf_error *err);

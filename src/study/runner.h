@@ -39,11 +39,11 @@ typedef struct sf_runner_result {
     sf_grade grade;                     /* of the run, as softfall-post gives it */
     double sure;                        /* sf_verdict.sure; 0: read from a record */
     char verdict[SF_VERDICT_LINE_SIZE]; /* sf_verdict_line of it */
-    double *figure;  /* [of sf_figure_at] sf_figure_number; owned */
-    char status[80]; /* how the run ended: the figure that is a text */
-    sf_series curve; /* s, g: filtered; owned */
-    char *path;      /* of its results.h5; owned */
-    char counted[SF_RUNNER_COUNTED]; /* sf_run_counted_text */
+    double *figure;                     /* [of sf_figure_at] sf_figure_number; owned */
+    char status[80];                    /* how the run ended: the figure that is a text */
+    sf_series curve;                    /* s, g: filtered; owned */
+    char *path;                         /* of its results.h5; owned */
+    char counted[SF_RUNNER_COUNTED];    /* sf_run_counted_text */
     bool reused;
 } sf_runner_result;
 
@@ -53,9 +53,6 @@ sf_status sf_runner_read(const sf_run_folder *at, bool figures_only, sf_runner_r
 
 /* A number of the list of figures; NaN: the run does not define it. */
 double sf_runner_figure(const sf_runner_result *result, const char *key);
-
-/* True if a campaign itself sets this key ("output.fields"), over the value of the drop. */
-bool sf_runner_sets_key(const char *key);
 
 /* Simulates the drop unless a finished run of the same inputs is there: the same values of every key of the
  * case and the material, the same curves and geometry files, and programs of the same revision. Release with
