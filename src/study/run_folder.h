@@ -5,9 +5,9 @@
 #include "post/figures/verdict.h"
 #include <limits.h>
 
-/* Figures of a finished drop, cached beside its results in a small text, figures.txt. It is read in place
- * of results.h5 as long as that is the file that it was made of (size and time); without it, or with one
- * of another version, damaged or half written, results.h5 is read and it is written anew. */
+/* Figures of a finished drop, cached beside its results in a small text, figures.txt. It tells in place of
+ * results.h5 that the drop is finished, as long as that is the file that it was made of (size and time);
+ * without it, or with one of another version, damaged or half written, it is written anew. */
 typedef struct sf_run_record {
     sf_grade grade;
     const char *verdict;  /* sf_verdict_line */

@@ -105,7 +105,7 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
     r->geometry = SF_HASH_START;
     for (int k = 0; k < SF_GEOMETRIES; k++)
         r->geometry = sf_hash_bytes(r->geometry, l.at.geometry[k], strlen(l.at.geometry[k]) + 1);
-    r->reused = sf_run_folder_is_finished(&l.at) && (runner->figures_only || is_readable(&l.at));
+    r->reused = sf_run_folder_is_finished(&l.at) && is_readable(&l.at);
     if (r->reused)
         sf_run_folder_clean(&l.at);
     else if (runner->engine.retry)
@@ -117,7 +117,7 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
 /* By the process that simulated the drop, so that nobody reads the results of many drops one by one. */
 static void record(const sf_run_folder *at) {
     SF_OWNED_BY(sf_runner_result_free) sf_runner_result result = {0};
-    sf_runner_read(at, false, &result, SF_IGNORED);
+    sf_runner_read(at, &result, SF_IGNORED);
 }
 
 static sf_status simulate(void *context, int index, sf_error *err) {
@@ -354,7 +354,7 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
     sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
     at.drops = drop->number > 0 ? drop->number : r->drops;
     at.counted = drop->number > 0 ? (int64_t)1 << (drop->number - 1) : r->counted;
-    SF_TRY(sf_runner_read(&at, runner->figures_only, result, err));
+    SF_TRY(sf_runner_read(&at, result, err));
     sf_run_counted_text(r->drops, at.counted, result->counted, sizeof result->counted);
     result->reused = r->reused;
     *(r->reused ? &runner->reused : &runner->simulated) += 1;
