@@ -15,7 +15,6 @@
 #include "post/figures/compare.h"
 #include "pre/mesh/geo_parameters.h"
 #include "pre/mesh/gmsh_session.h"
-#include "study/sweep/analysis.h"
 #include <ftw.h>
 #include <hdf5.h>
 #include <stdio.h>
@@ -185,16 +184,6 @@ static sf_status read_msh(const char *path, sf_error *err) {
     return err->status;
 }
 
-/* The plan of a sweep, and the cases of its rows. */
-static sf_status read_plan(const char *path, sf_error *err) {
-    sf_plan plan;
-    uint64_t hash;
-    if (sf_plan_read(path, false, false, &plan, err) == SF_OK)
-        sf_sweep_check_inputs(&plan, &hash, err);
-    sf_plan_free(&plan);
-    return err->status;
-}
-
 /* A batch, and the same text as what became of its first group. */
 static sf_status read_manifest(const char *path, sf_error *err) {
     sf_manifest m;
@@ -202,42 +191,6 @@ static sf_status read_manifest(const char *path, sf_error *err) {
     if (sf_manifest_read(path, &m, err) == SF_OK && m.count > 0)
         sf_manifest_read_outcome(path, 1, m.run, &failure);
     sf_manifest_free(&m);
-    return err->status;
-}
-
-/* The text is the rows of a runs.csv under the heading that the programs write. */
-static sf_status write_rows(const sf_runs *none, const char *path, const char *table, uint64_t *hash,
-                            sf_error *err) {
-    char *rows = NULL;
-    size_t size = 0;
-    if (sf_plain_read(path, "rows", SF_PLAIN_ANY, &rows, &size, err) == SF_OK &&
-        sf_runs_write(none, table, hash, err) == SF_OK) {
-        FILE *file = fopen(table, "r+b");
-        for (int c = 0; file && (c = fgetc(file)) != EOF && c != '\n';) {
-        }
-        if (!file || fseek(file, 0, SEEK_CUR) != 0 || ftruncate(fileno(file), ftell(file)) != 0 ||
-            fwrite(rows, 1, size, file) != size || fclose(file) != 0)
-            abort();
-        sf_plain_hash(table, "table of the runs", SF_PLAIN_ANY, hash, err);
-    }
-    free(rows);
-    return err->status;
-}
-
-static sf_status read_rows(const char *path, sf_error *err) {
-    char table[512];
-    sf_plan plan;
-    sf_runs runs = {0};
-    sf_analysis analysis = {0};
-    uint64_t hash = 0;
-    snprintf(table, sizeof table, "%s", in_folder("runs.csv"));
-    if (sf_plan_read(in_folder("sweep.cfg"), false, false, &plan, err) == SF_OK &&
-        sf_runs_create(&plan, &runs, err) == SF_OK && write_rows(&runs, path, table, &hash, err) == SF_OK &&
-        sf_runs_read(&runs, table, hash, err) == SF_OK)
-        sf_analysis_make(&runs, &analysis, err);
-    sf_analysis_free(&analysis);
-    sf_runs_free(&runs);
-    sf_plan_free(&plan);
     return err->status;
 }
 
@@ -255,9 +208,7 @@ static const fuzz_reader readers[] = {
     {"stream", "mesh.stream", read_stream},
     {"compression", "fit.cfg", read_compression},
     {"pressing", "pressing.csv", read_pressing},
-    {"plan", "plan.cfg", read_plan},
     {"manifest", "manifest.tsv", read_manifest},
-    {"rows", "rows.csv", read_rows},
 };
 
 const fuzz_reader *fuzz_reader_at(int index) {
@@ -311,9 +262,6 @@ void fuzz_begin(void) {
         {"good.cfg",
          GEOMETRY "material: { " MATERIAL "};\nmissile: { mass = \"4.6 kg\"; velocity = \"4.5 m/s\"; };\n"},
         {"driven.cfg", GEOMETRY "material: { " MATERIAL "};\n"},
-        {"sweep.cfg",
-         "case = \"good.cfg\"; factors = ( { key = \"missile.velocity\"; values = [\"4 m/s\", \"4.5 m/s\", \"5 m/s\"]; }, "
-         "{ key = \"material.density\"; values = [\"30 kg/m3\", \"40 kg/m3\"]; uncertain = true; } );\n"},
     };
     const char *root = getenv("TMPDIR");
     snprintf(folder, sizeof folder, "%s/softfall-fuzz-XXXXXX", root && *root ? root : "/tmp");

@@ -221,18 +221,6 @@ static void a_drop_that_crashes_is_done_and_one_that_is_killed_is_not(void **sta
     sf_manifest_free(&m);
 }
 
-/* Some minutes each; a batch of 100,000 is at most 1000 jobs, one of few drops more than a few. */
-static void groups_are_of_several_drops(void **state) {
-    (void)state;
-    assert_int_equal(sf_manifest_group_size(3, 0), 20);
-    assert_int_equal(sf_manifest_group_size(100000, 0), 100);
-    assert_int_equal(sf_manifest_group_size(100, 60), 3);
-    assert_int_equal(sf_manifest_group_size(100, 1000), 1);
-    assert_int_equal(sf_manifest_group_size(100, 1), 20);
-    assert_int_equal(sf_manifest_group_size(20000, 1), 100);
-    assert_int_equal(sf_manifest_group_size(20000, 17), 20);
-}
-
 static void what_is_no_manifest_is_refused(void **state) {
     const program_place *p = *state;
     static const struct {
@@ -494,7 +482,6 @@ int main(void) {
         cmocka_unit_test(a_drop_that_is_twice_in_a_batch_fails_twice),
         cmocka_unit_test(a_group_is_run_by_its_name_and_only_once),
         cmocka_unit_test(a_drop_that_crashes_is_done_and_one_that_is_killed_is_not),
-        cmocka_unit_test(groups_are_of_several_drops),
         cmocka_unit_test(what_is_no_manifest_is_refused),
         cmocka_unit_test(an_engine_that_is_missing_is_named_with_its_package),
         cmocka_unit_test(a_profile_is_looked_for_before_anything_is_started),

@@ -78,8 +78,6 @@ static void cut_and_changed_seeds_are_read_or_refused(void **state) {
                  {"model", "cube.h5", CUTS, 9},
                  {"results", "cube.h5", CUTS, 5},
                  {"stream", "tetrahedron.stream", CUTS, 11},
-                 {"plan", "zip.cfg", CUTS, 27},
-                 {"plan", "sample.cfg", CUTS, 29},
                  {"manifest", "three.tsv", 12, 8}};
     (void)state;
     uint64_t seed = 5;

@@ -37,12 +37,6 @@ static const struct {
     {"predict.cfg", "name = \"foam\"; material = \"eva35_start.cfg\";\n"
                     "drops = ( { name = \"a\"; case = \"good.cfg\"; a_max_g = 60.0; a_max_sd = 0.01; } );\n"
                     "predict = ( { name = \"b\"; case = \"hostile\"; } );\n"},
-    {"sweep-case.cfg",
-     "case = \"hostile\"; factors = ( { key = \"missile.velocity\"; values = [\"4 m/s\"]; } );\n"},
-    {"sweep-file.cfg",
-     "case = \"good.cfg\"; factors = ( { key = \"material\"; files = [\"hostile\"]; } );\n"},
-    {"sweep-set.cfg", "case = \"good.cfg\"; set = [\"material=@hostile\"]; "
-                      "factors = ( { key = \"missile.velocity\"; values = [\"4 m/s\"]; } );\n"},
 };
 
 static const struct {
@@ -81,11 +75,6 @@ static const struct {
     {"cfh", "good.cfg -o new --material hostile"},
     {"cfh", "good.cfg -o new --rig hostile"},
     {"cfh", "good.cfg -o new --set material.curve=hostile"},
-    {"sweep", "hostile -o new"},
-    {"sweep", "include.cfg -o new"},
-    {"sweep", "sweep-case.cfg -o new"},
-    {"sweep", "sweep-file.cfg -o new"},
-    {"sweep", "sweep-set.cfg -o new"},
     {"batch", "hostile"},
     {"batch", "hostile --group 00001-0"},
 };

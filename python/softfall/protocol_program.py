@@ -169,9 +169,9 @@ def parser(prog: str) -> Parser:
     add("--bound", metavar="SHARE", type=float, help="with --advise: stop at this probability of a wrong decision (default 0.05), or relative interval "
                                                      "(0.1)")
     add("--draws", metavar="N", type=int, help="draws of --posterior (default: all)")
-    add("--engine", metavar="NAME", help="what runs the drops: local (default) or snakemake")
+    add("--engine", metavar="NAME", help="what runs searches and draws of the foam: local (default) or snakemake")
     add("-f", "--force", action="store_true", help="replace the report of an earlier command in DIR; its finished drops are used again")
-    add("-j", "--jobs", metavar="N", type=int, help="drops side by side")
+    add("-j", "--jobs", metavar="N", type=int, help="drops of searches and of draws side by side")
     add("--laboratory", metavar="FILE", help="laboratory, sample, date, conditioning, photo: a text file of fields")
     add("--list", action="store_true", help="list the protocols, and end")
     add("--measured", metavar="DIR", help="measured drops: a folder with list.csv")

@@ -117,6 +117,7 @@ def simulate(folder: Path, tasks: Sequence[Task], per_job: int, jobs: int, profi
         process = subprocess.Popen(["snakemake", "--snakefile", str(share / "Snakefile"), "--directory", str(batch.absolute()), "--nolock", "--keep-going", "--rerun-incomplete",
                                     "--config", f"manifest={(batch / MANIFEST).absolute()}", f"program={programs.folder() / 'softfall-rows'}", "threads=1", *place],
                                    stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True, pass_fds=[lock],
+                                   preexec_fn=_take_interrupts,
                                    env={**os.environ, "SOFTFALL_SHARE": str(share)})
         try:
             while process.poll() is None:
@@ -126,6 +127,11 @@ def simulate(folder: Path, tasks: Sequence[Task], per_job: int, jobs: int, profi
             process.wait()
             raise
     return answers(folder)
+
+
+def _take_interrupts() -> None:
+    """Lets SIGINT end a program that is started, also where this one runs in the background of a shell, which ignores it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def answers(folder: Path) -> Iterator[Answer]:

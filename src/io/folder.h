@@ -36,8 +36,7 @@ void sf_folder_leave(const char *path);
 /* The number of names in the folder that begin with `prefix`; -1: it cannot be read. */
 int64_t sf_folder_count(const char *path, const char *prefix);
 
-/* One file of this name, in a folder with the mark or that of a campaign (sweep.key): removed if it is a
- * plain file. */
+/* Removes a file of a folder with the mark, if it is a plain file. */
 void sf_folder_remove_file(const char *path);
 
 /* A folder of intermediate results that are found again by a key of everything they follow from: a file

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The output directory. Files are first written in a hidden directory inside it and moved to their places
- * when all of them are complete: a run that fails leaves the files of an earlier run as they were
- * (softfall-sweep removes an old report itself when its table turns to other inputs). The hidden
+ * when all of them are complete: a run that fails leaves the files of an earlier run as they were. The hidden
  * directory bears the process's number; that of a run that was killed is removed by the next one. */
 #pragma once
 #include "base/error.h"

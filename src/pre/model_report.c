@@ -201,7 +201,8 @@ static double expected_steps(const sf_model *m, const sf_build_report *r) {
     return TYPICAL * r->slowdown * m->run.end_time / first_step(m, r);
 }
 
-double sf_report_seconds(const sf_model *m, const sf_build_report *r) {
+/* Expected time of the run on two cores, s, to a factor of 2. */
+static double expected_seconds(const sf_model *m, const sf_build_report *r) {
     return expected_steps(m, r) * (double)m->node_count / RATE;
 }
 
@@ -213,7 +214,7 @@ static void add_cost(sf_model_report *out, const sf_model *m, const sf_build_rep
         1e6 * r->first_step);
     add(out, "memory", "memory of the solver", "%.0f MB (%.2f kB per node)", bytes / 1e6, bytes / n / 1e3);
     add(out, "run_time", "typical run time", "%.0f s on two cores, for about %.0f steps (to a factor of 2)",
-        sf_report_seconds(m, r), steps);
+        expected_seconds(m, r), steps);
 }
 
 static void add_mesh(sf_model_report *out, const sf_model *m, const sf_build_report *r) {

@@ -21,5 +21,3 @@ void sf_model_report_print(FILE *out, const sf_model_report *report);
 
 /* The text of /provenance/report; from malloc, owned by the caller; NULL without memory. */
 char *sf_model_report_text(const sf_model_report *report, sf_error *err);
-/* Expected time of the run on two cores, s, to a factor of 2. */
-double sf_report_seconds(const sf_model *model, const sf_build_report *report);

@@ -231,11 +231,6 @@ void sf_html_number(sf_html_table *table, int digits, double value) {
         sf_html_cell(table, "–");
 }
 
-void sf_html_numbers(sf_html_table *table, int digits, const double *value, int count) {
-    for (int k = 0; k < count; k++)
-        sf_html_number(table, digits, value[k]);
-}
-
 void sf_html_line(sf_html_table *table, const char *first, const char *format, ...) {
     char text[1024], *rest = text, *cell;
     SF_PRINT_INTO(text, format);

@@ -70,11 +70,6 @@ void sf_html_cell(sf_html_table *table, const char *format, ...) __attribute__((
 void sf_html_hint(sf_html_table *table, const char *text);
 /* The value with so many digits after the point, or a dash if it is not finite. */
 void sf_html_number(sf_html_table *table, int digits, double value);
-/* The same of several cells. */
-#define SF_HTML_NUMBERS(table, digits, ...)                                                                  \
-    sf_html_numbers(table, digits, (const double[]){__VA_ARGS__},                                            \
-                    (int)(sizeof(double[]){__VA_ARGS__} / sizeof(double)))
-void sf_html_numbers(sf_html_table *table, int digits, const double *value, int count);
 /* A row: a cell of text, and cells of numbers and words of ours between '|' in the format; NULL: these alone,
  * in the row that is open. A cell that begins with a number that is not finite is a dash. */
 void sf_html_line(sf_html_table *table, const char *first, const char *format, ...)

@@ -158,18 +158,8 @@ void sf_engine_complaint(const char *log, size_t begin, char *out, size_t size) 
 /* ---- the manifest ---- */
 
 static const char HEAD[] = "softfall-manifest 1";
-enum { USUAL = 20, FEW_GROUPS = 200, MOST_FIELDS = 5 + SF_RUNNER_OVERRIDES };
-static const double JOB_SECONDS = 180;
+enum { MOST_FIELDS = 5 + SF_RUNNER_OVERRIDES };
 #define LARGEST (UINT64_C(1) << 32) /* bytes of a manifest: millions of drops */
-
-int sf_manifest_group_size(int count, double seconds) {
-    int least = (count + SF_MANIFEST_GROUPS - 1) / SF_MANIFEST_GROUPS,
-        most = (count + FEW_GROUPS - 1) / FEW_GROUPS;
-    most = most > USUAL ? most : USUAL;
-    double wanted = seconds > 0 ? ceil(JOB_SECONDS / seconds) : USUAL;
-    int size = wanted < most ? (int)wanted : most;
-    return size > least ? size : least;
-}
 
 /* ---- writing ---- */
 

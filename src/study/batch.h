@@ -20,8 +20,7 @@ typedef struct sf_runner_drop {
 typedef struct sf_runner_engine {
     const char *name;    /* NULL or "local": this process; "snakemake" */
     const char *profile; /* of Snakemake; NULL: none */
-    int per_job;         /* drops of a job; 0: sf_manifest_group_size */
-    double drop_seconds; /* that a drop takes on one core; 0: not known */
+    int per_job;         /* drops of a job; 0: one */
     int job_threads;     /* of a job; 0: one */
     bool retry;          /* drops that failed earlier are simulated again; else they fail as they did */
     const int *lock;     /* of the campaign (sf_folder_lock): an engine that outlives this process keeps it;
@@ -54,7 +53,7 @@ void sf_engine_complaint(const char *log, size_t begin, char *text, size_t size)
 
 #define SF_MANIFEST_FOLDER "batch" /* in the folder of the runs */
 #define SF_MANIFEST_NAME "manifest.tsv"
-enum { SF_MANIFEST_GROUP_SIZE = 32, SF_MANIFEST_GROUPS = 1000 /* of a batch, at most, unless asked for */ };
+enum { SF_MANIFEST_GROUP_SIZE = 32 };
 
 /* A drop, its key and its group. */
 typedef struct sf_manifest_run {
@@ -70,11 +69,6 @@ typedef struct sf_manifest {
     sf_manifest_run *run; /* [count], the groups one after another; owned */
     char *text;           /* owned */
 } sf_manifest;
-
-/* Drops of a group, a job of an engine: as many as take three minutes, if it is known how many `seconds` one
- * takes (else 0), but of few drops not so many that only a few jobs are left: at most 20, or what makes 200
- * groups. At least as many as make SF_MANIFEST_GROUPS. */
-int sf_manifest_group_size(int count, double seconds);
 
 /* Writes the manifest of drop[index[k]] with their keys, k < count. SF_ERR_INPUT: a text holds a tab or a
  * line end. */

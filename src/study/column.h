@@ -90,7 +90,7 @@ typedef struct sf_predictor {
     double mean, deviation;             /* of the process, in units of the output */
     double calibration; /* -, factor of all standard deviations, from the residuals of points left out: the
                            larger of their root mean square and of their 95 % quantile, over what the process
-                           expects, or what sf_predictor_validate finds */
+                           expects */
     double *x;          /* [count][inputs], and behind them the next three; owned */
     gsl_matrix_view factor; /* [count][count] lower Cholesky factor of the correlation K */
     gsl_vector_view weight; /* [count] K^-1 (y - mean) */
@@ -109,18 +109,3 @@ void sf_predictor_free(sf_predictor *predictor);
  * computed, with its scatter. */
 void sf_predictor_at(const sf_predictor *predictor, const double *x, double *room, double *mean,
                      double *deviation);
-
-/* Widens the standard deviations of a process until its 95 % intervals hold 95 % of its points, each eighth
- * of them predicted by a process that has learnt from the others (cross-conformal prediction), and less than
- * 93 % of other points with a probability of at most 0.1. The factor, at least 1, is one of the n residuals
- * over half of their intervals. Of fewer than 55 that is the largest, which bounds 95 % of other points only
- * from 19 on, and 93 % with that probability from 32 on. `held` of the points were in their intervals before.
- * `y` [count] are the outputs that the process was fitted to, at least four. Errors as of sf_predictor_fit.
- */
-sf_status sf_predictor_validate(sf_predictor *predictor, const double *y, int *held, sf_error *err);
-
-/* Chooses up to `most` of `candidates` points x [candidates][inputs] to be computed next: again and again the
- * one whose standard deviation over `wish` (of its own) is largest, given those that were chosen before it,
- * while it exceeds one. `chosen` [most] receives their places; returns how many, -1 without memory. */
-int sf_predictor_choose(const sf_predictor *predictor, int candidates, const double *x, const double *wish,
-                        int most, int *chosen);

@@ -6,7 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-void sf_config_place(const sf_config *config, const config_setting_t *setting, char *text, size_t size) {
+/* Writes "file:line" of the setting, or "file" of NULL. */
+static void print_place(const sf_config *config, const config_setting_t *setting, char *text, size_t size) {
     int line = setting ? (int)config_setting_source_line(setting) : 0;
     const char *path = line > 0 ? sf_case_source_find(&config->source, line, &line) : config->path;
     int length = snprintf(text, size, "%.480s", path);
@@ -18,7 +19,7 @@ sf_status sf_config_refuse(const sf_config *config, const config_setting_t *sett
                            const char *format, ...) {
     char sentence[768], place[512];
     SF_PRINT_INTO(sentence, format);
-    sf_config_place(config, setting, place, sizeof place);
+    print_place(config, setting, place, sizeof place);
     return SF_REFUSE(err, "%s: %s", place, sentence);
 }
 
@@ -107,7 +108,7 @@ static const config_setting_t *find(const sf_config *config, const config_settin
     return setting;
 }
 
-bool sf_config_is_number(const config_setting_t *s, double *out) {
+static bool is_number(const config_setting_t *s, double *out) {
     int type = config_setting_type(s);
     *out = type == CONFIG_TYPE_FLOAT   ? config_setting_get_float(s)
            : type == CONFIG_TYPE_INT   ? config_setting_get_int(s)
@@ -121,7 +122,7 @@ sf_status sf_config_number(const sf_config *config, const config_setting_t *grou
     const config_setting_t *s = find(config, group, name, required, err);
     if (!s)
         return err->status;
-    if (!sf_config_is_number(s, out))
+    if (!is_number(s, out))
         return sf_config_refuse(config, s, err, "%s must be a number", name);
     if (!(*out >= low && *out <= high))
         return sf_config_refuse(config, s, err, "%s" SF_OUTSIDE("%g", "%g", "%g"), name, *out, low, high);
@@ -192,7 +193,7 @@ sf_status sf_config_choice(const sf_config *config, const config_setting_t *grou
     return SF_OK;
 }
 
-void sf_config_path(const sf_config *config, const char *name, char path[PATH_MAX]) {
+static void resolve(const sf_config *config, const char *name, char path[PATH_MAX]) {
     bool below = *name != '/';
     snprintf(path, PATH_MAX, "%s%s%s", below ? config->folder : "", below ? "/" : "", name);
 }
@@ -203,7 +204,7 @@ sf_status sf_config_file(const sf_config *config, const config_setting_t *group,
     if (sf_config_text(config, group, name, required, &text, err) != SF_OK || !text)
         return err->status;
     char path[PATH_MAX];
-    sf_config_path(config, text, path);
+    resolve(config, text, path);
     sf_error inner = SF_ERROR_INIT;
     if (sf_plain_check(path, NULL, &inner) != SF_OK)
         return sf_config_refuse(config, config_setting_get_member(group, name), err, "%s: %s", name,

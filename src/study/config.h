@@ -32,8 +32,6 @@ sf_status sf_config_number(const sf_config *config, const config_setting_t *grou
 /* The same for a whole number. */
 sf_status sf_config_whole(const sf_config *config, const config_setting_t *group, const char *name,
                           bool required, double low, double high, double *out, sf_error *err);
-/* True if the setting is a number, which goes into `*out`. */
-bool sf_config_is_number(const config_setting_t *setting, double *out);
 /* SI value, from `low` on; `low` 0: above zero. */
 sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
                              sf_quantity kind, bool required, double low, double *out, sf_error *err);
@@ -49,8 +47,6 @@ sf_status sf_config_choice(const sf_config *config, const config_setting_t *grou
 /* The name of a file that can be read, resolved against the file's folder; owned by the caller. */
 sf_status sf_config_file(const sf_config *config, const config_setting_t *group, const char *name,
                          bool required, char **out, sf_error *err);
-/* A name resolved in the same way, cut at PATH_MAX. */
-void sf_config_path(const sf_config *config, const char *name, char path[PATH_MAX]);
 /* A list of groups, `( { ... }, { ... } )`, with at most `most` entries; NULL if it is absent and not
  * required. */
 sf_status sf_config_list(const sf_config *config, const config_setting_t *group, const char *name,
@@ -61,8 +57,6 @@ sf_status sf_config_list(const sf_config *config, const config_setting_t *group,
 sf_status sf_config_overrides(const sf_config *config, const char *name, int most, char **text, int *count,
                               sf_error *err);
 
-/* Writes "file:line" of the setting, or "file" of NULL. */
-void sf_config_place(const sf_config *config, const config_setting_t *setting, char *text, size_t size);
 /* Records SF_ERR_INPUT: "file:line: sentence". */
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,
                            const char *format, ...) __attribute__((format(printf, 4, 5)));

@@ -437,12 +437,3 @@ sf_status sf_run_folder_simulate(const sf_run_folder *at, const char *case_path,
         close(lock);
     return err->status;
 }
-
-sf_status sf_run_folder_report(const sf_run_folder *at, sf_error *err) {
-    char post[PATH_MAX], directory[SF_RUN_PATH_SIZE];
-    const char *const arguments[] = {post, "series", at->results, "-o", directory, "--force", NULL};
-    const char *const single[] = {post, at->results, "-o", directory, "--force", NULL};
-    snprintf(directory, sizeof directory, "%s/report", at->path);
-    SF_TRY(sf_process_find("softfall-post", post, sizeof post, err));
-    return run_program(at->drops > 1 ? arguments : single, at->log, NULL, err);
-}

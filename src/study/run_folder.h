@@ -5,9 +5,9 @@
 #include "post/figures/verdict.h"
 #include <limits.h>
 
-/* Figures of a finished drop, cached beside its results in a small text, figures.txt. It is read in place
- * of results.h5 as long as that is the file that it was made of (size and time); without it, or with one
- * of another version, damaged or half written, results.h5 is read and it is written anew. */
+/* Figures of a finished drop, cached beside its results in a small text, figures.txt. It tells in place of
+ * results.h5 that the drop is finished, as long as that is the file that it was made of (size and time);
+ * without it, or with one of another version, damaged or half written, it is written anew. */
 typedef struct sf_run_record {
     sf_grade grade;
     const char *verdict;  /* sf_verdict_line */
@@ -33,11 +33,6 @@ void sf_run_record_write(const char *path, const char *results, const sf_results
  * the programs that simulate it; the names of files do not count. What a geometry includes or merges is known
  * only after it was read: sf_run_folder_is_finished. */
 sf_status sf_campaign_key(const sf_case *c, uint64_t *key, sf_error *err);
-
-/* Why two geometry files of one text in two folders are refused. */
-#define SF_CAMPAIGN_SAME_TEXT                                                                                \
-    "the same text in different folders: they may merge different files; make a difference in their text, "  \
-    "a comment for example"
 
 /* Returns the list of the files that the geometries read, at `text` of the HDF5 file `path` (docs/formats.md,
  * geometry_files), from malloc; NULL if there is none. */
@@ -99,10 +94,6 @@ void sf_run_folder_clean(const sf_run_folder *folder);
  * checkpoint. */
 sf_status sf_run_folder_simulate(const sf_run_folder *folder, const char *case_path, int count,
                                  const char *const *overrides, int threads, sf_error *err);
-
-/* Writes report.html, view.html and what else softfall-post makes of the results into its folder `report`; of
- * a series what softfall-post series makes. */
-sf_status sf_run_folder_report(const sf_run_folder *folder, sf_error *err);
 
 /* Records SF_INTERRUPTED. */
 sf_status sf_run_folder_interrupted(sf_error *err);

@@ -84,21 +84,6 @@ static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_
     return finish_result(path, out, err);
 }
 
-/* Reads one drop, of which `figures_only` are wanted: from its record alone, if there is one. */
-static sf_status read_drop(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err) {
-    SF_OWNED_BY(sf_run_record_free) sf_run_record record = {0};
-    if (!figures_only || !sf_run_record_read(at->figures, at->results, &record))
-        return read_result(at, out, err);
-    *out = (sf_runner_result){
-        .grade = record.grade, .hic_window = NAN, .contact_time = NAN, .figure = record.figure};
-    record.figure = NULL;
-    take_numbers(out);
-    out->max_local_strain = sf_runner_figure(out, "max_local_strain");
-    snprintf(out->verdict, sizeof out->verdict, "%s", record.verdict);
-    snprintf(out->status, sizeof out->status, "%s", record.status);
-    return finish_result(at->results, out, err);
-}
-
 /* Adds the figures of a drop of a series, from 1, to those of the drops before it. */
 static void add_figures(const sf_run_folder *at, int drop, const double *figure, double *sum) {
     int counted = __builtin_popcountll((unsigned long long)at->counted);
@@ -133,15 +118,15 @@ static void add_drop(int drop, sf_runner_result *one, sf_runner_result *all) {
     memcpy(all->status, one->status, sizeof all->status);
 }
 
-sf_status sf_runner_read(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err) {
+sf_status sf_runner_read(const sf_run_folder *at, sf_runner_result *out, sf_error *err) {
     sf_runner_result all = {0};
     if (at->drops == 1)
-        return read_drop(at, figures_only, out, err);
+        return read_result(at, out, err);
     all.figure = sf_alloc(err, SF_FIGURE_TOTAL, sizeof *all.figure, "figures");
     for (int k = 1; k <= at->drops && err->status == SF_OK; k++) {
         const sf_run_folder drop = sf_run_folder_of_drop(at, k);
         SF_OWNED_BY(sf_runner_result_free) sf_runner_result one = {0};
-        if (read_drop(&drop, figures_only, &one, err) != SF_OK)
+        if (read_result(&drop, &one, err) != SF_OK)
             break;
         add_figures(at, k, one.figure, all.figure);
         add_drop(k, &one, &all);

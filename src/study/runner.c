@@ -10,14 +10,6 @@
 static const char *const lean_output[] = {"output.fields=[\"displacement\"]", "output.frame_interval=1000 s"};
 enum { LEAN = sizeof lean_output / sizeof lean_output[0] };
 
-bool sf_runner_sets_key(const char *key) {
-    size_t length = strlen(key);
-    for (int k = 0; k < LEAN; k++)
-        if (strncmp(lean_output[k], key, length) == 0 && lean_output[k][length] == '=')
-            return true;
-    return false;
-}
-
 /* ---- drops ---- */
 
 /* A drop with its overrides, those of campaigns included, and its folder. */
@@ -74,7 +66,7 @@ typedef struct request {
     uint64_t geometry; /* hash of the folders that the geometries' other files are in */
     int64_t counted;   /* with the next one those of the folder */
     int drops;
-    int first;         /* the first drop of the batch with the same folder */
+    int first; /* the first drop of the batch with the same folder */
 } request;
 
 typedef struct batch {
@@ -113,7 +105,7 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
     r->geometry = SF_HASH_START;
     for (int k = 0; k < SF_GEOMETRIES; k++)
         r->geometry = sf_hash_bytes(r->geometry, l.at.geometry[k], strlen(l.at.geometry[k]) + 1);
-    r->reused = sf_run_folder_is_finished(&l.at) && (runner->figures_only || is_readable(&l.at));
+    r->reused = sf_run_folder_is_finished(&l.at) && is_readable(&l.at);
     if (r->reused)
         sf_run_folder_clean(&l.at);
     else if (runner->engine.retry)
@@ -125,7 +117,7 @@ static void prepare(const sf_runner *runner, const sf_runner_drop *drop, request
 /* By the process that simulated the drop, so that nobody reads the results of many drops one by one. */
 static void record(const sf_run_folder *at) {
     SF_OWNED_BY(sf_runner_result_free) sf_runner_result result = {0};
-    sf_runner_read(at, false, &result, SF_IGNORED);
+    sf_runner_read(at, &result, SF_IGNORED);
 }
 
 static sf_status simulate(void *context, int index, sf_error *err) {
@@ -153,8 +145,10 @@ static int compare(const void *p, const void *q, void *context) {
  * be two geometries, and both would have one folder of results. */
 static void refuse_double(const batch *b, int one, int other, sf_error *failure) {
     if (b->request[one].geometry != b->request[other].geometry && failure->status == SF_OK)
-        SF_REFUSE(failure, "the drops %s and %s read geometry files of " SF_CAMPAIGN_SAME_TEXT,
-                  b->drop[one].label, b->drop[other].label);
+        SF_REFUSE(
+            failure,
+            "the drops %s and %s read geometry files of the same text in different folders: they may merge different files; make a difference in their text, a comment for example",
+            b->drop[one].label, b->drop[other].label);
 }
 
 /* The drops that are not there, each once, in the order of the batch. */
@@ -302,18 +296,6 @@ static void tell_groups(void *context) {
     b->ended = ended;
 }
 
-/* Drops of a job: what was asked for, or else what takes some minutes; on the processors of this machine
- * alone, as few as keep them all at work. */
-static int choose_group_size(const batch *b) {
-    const sf_runner_engine *engine = &b->runner->engine;
-    int processors = b->runner->threads > 0 ? b->runner->threads : 1,
-        size = sf_manifest_group_size(b->pending_count, engine->drop_seconds),
-        shared = (b->pending_count + processors - 1) / processors;
-    if (engine->per_job > 0)
-        return engine->per_job;
-    return engine->profile || size < shared ? size : shared;
-}
-
 /* By the engine, group by group. `failure` by the pending ones. */
 static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) {
     const sf_runner *runner = b->runner;
@@ -321,7 +303,7 @@ static sf_status simulate_elsewhere(batch *b, sf_error *failure, sf_error *err) 
     struct stat before = {0}; /* of the log, which goes on */
     SF_OWNED_BY(sf_manifest_free) sf_manifest m = {0};
     SF_OWNED uint64_t *key = sf_alloc(err, b->count, sizeof *key, "keys");
-    int code = 0, size = choose_group_size(b);
+    int code = 0, size = runner->engine.per_job > 0 ? runner->engine.per_job : 1;
     for (int k = 0; key && k < b->count; k++)
         key[k] = b->request[k].key;
     snprintf(folder, sizeof folder, "%s/" SF_MANIFEST_FOLDER, runner->folder);
@@ -372,7 +354,7 @@ static sf_status take_result(sf_runner *runner, const sf_runner_drop *drop, cons
     sf_run_folder_name_key(runner->folder, drop->label, r->key, &at);
     at.drops = drop->number > 0 ? drop->number : r->drops;
     at.counted = drop->number > 0 ? (int64_t)1 << (drop->number - 1) : r->counted;
-    SF_TRY(sf_runner_read(&at, runner->figures_only, result, err));
+    SF_TRY(sf_runner_read(&at, result, err));
     sf_run_counted_text(r->drops, at.counted, result->counted, sizeof result->counted);
     result->reused = r->reused;
     *(r->reused ? &runner->reused : &runner->simulated) += 1;

@@ -13,7 +13,6 @@ typedef struct sf_runner {
     int threads;        /* of softfall-solve, together, but at least one of each drop that runs */
     int jobs;           /* drops of a batch that run side by side, at most SF_PROCESS_JOBS; 0: as many as
                            threads. More than threads: the log says so */
-    bool figures_only;  /* of the results neither curve nor layers are wanted: figures.txt is enough */
     FILE *log;          /* a line for each drop; borrowed; NULL: silent */
     int64_t simulated;  /* drops so far, out */
     int64_t reused;     /* drops whose results were there, out */
@@ -37,25 +36,22 @@ typedef struct sf_runner_result {
     double *layer_strain;               /* [layer_count] -, largest, NaN: not known; owned */
     double energy_error;                /* - */
     sf_grade grade;                     /* of the run, as softfall-post gives it */
-    double sure;                        /* sf_verdict.sure; 0: read from a record */
+    double sure;                        /* sf_verdict.sure */
     char verdict[SF_VERDICT_LINE_SIZE]; /* sf_verdict_line of it */
-    double *figure;  /* [of sf_figure_at] sf_figure_number; owned */
-    char status[80]; /* how the run ended: the figure that is a text */
-    sf_series curve; /* s, g: filtered; owned */
-    char *path;      /* of its results.h5; owned */
-    char counted[SF_RUNNER_COUNTED]; /* sf_run_counted_text */
+    double *figure;                     /* [of sf_figure_at] sf_figure_number; owned */
+    char status[80];                    /* how the run ended: the figure that is a text */
+    sf_series curve;                    /* s, g: filtered; owned */
+    char *path;                         /* of its results.h5; owned */
+    char counted[SF_RUNNER_COUNTED];    /* sf_run_counted_text */
     bool reused;
 } sf_runner_result;
 
 /* Reads the single drop of a folder, or all drops of its series; writes the record of figures that is
- * missing. `figures_only`: the record is enough. */
-sf_status sf_runner_read(const sf_run_folder *at, bool figures_only, sf_runner_result *out, sf_error *err);
+ * missing. */
+sf_status sf_runner_read(const sf_run_folder *at, sf_runner_result *out, sf_error *err);
 
 /* A number of the list of figures; NaN: the run does not define it. */
 double sf_runner_figure(const sf_runner_result *result, const char *key);
-
-/* True if a campaign itself sets this key ("output.fields"), over the value of the drop. */
-bool sf_runner_sets_key(const char *key);
 
 /* Simulates the drop unless a finished run of the same inputs is there: the same values of every key of the
  * case and the material, the same curves and geometry files, and programs of the same revision. Release with

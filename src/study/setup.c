@@ -30,9 +30,7 @@ static const sf_option batches[] = {
     {"profile", 0, "PROFILE",
      "with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall",
      .member = offsetof(sf_study, engine.profile), .group = LAST_GROUP},
-    {"per-job", 0, "N",
-     "with --engine snakemake: drops of a job (default 1; of softfall-sweep as many as take three minutes, "
-     "within bounds)",
+    {"per-job", 0, "N", "with --engine snakemake: drops of a job (default 1)",
      .member = offsetof(sf_study, engine.per_job), .low = 1, .high = 100000, .group = LAST_GROUP},
     {"retry", 0, NULL, "simulate drops again that failed earlier", .member = offsetof(sf_study, engine.retry),
      .group = LAST_GROUP},

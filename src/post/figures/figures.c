@@ -20,11 +20,6 @@ static const double FREE_FLIGHT = 5e-3; /* s, at least, before the first contact
 #define FIGURE(kind, member, key, factor, ...) EXPAND(PLACE_##kind(member), key, factor, __VA_ARGS__)
 const sf_figure sf_figure_at[] = {SF_FIGURES(FIGURE)};
 
-void sf_figure_csv_keys(sf_csv *csv) {
-    for (int k = 0; k < SF_FIGURE_TOTAL; k++)
-        sf_csv_print(csv, "%s", sf_figure_at[k].row.key);
-}
-
 const void *sf_figure_record(const sf_figure *figure, const sf_results *results, const sf_figures *figures) {
     return figure->fact ? (const void *)results : (const void *)figures;
 }

@@ -180,8 +180,6 @@ double sf_figures_reading(const sf_results *results, int64_t row);
 enum { SF_FIGURE_TOTAL = 0 SF_FIGURES(SF_FIGURE_ONE) };
 #undef SF_FIGURE_ONE
 extern const sf_figure sf_figure_at[SF_FIGURE_TOTAL];
-/* Writes the keys of all figures as cells. */
-void sf_figure_csv_keys(sf_csv *csv);
 /* The line of that key; NULL if there is none. */
 const sf_figure *sf_figure_find(const char *key);
 
