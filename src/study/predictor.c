@@ -13,7 +13,6 @@ enum { MOST_FOR_LENGTHS = 250, STEPS = 60, LEAST_FOR_CALIBRATION = 20, FOLDS = 8
  * of drops over their columns are long; from short ones the search often ends in a worse maximum. */
 static const double LENGTH_MEDIAN = 3, LENGTH_SD = 1.5, NUGGET_MEDIAN = 1e-6, NUGGET_SD = 3;
 static const double LEAST_VARIANCE = 1e-20, LEAST_CALIBRATION = 0.25, SHARE = 0.95;
-static const double LEAST_SHARE = 0.93, RISK = 0.1; /* intervals hold less with at most this probability */
 
 /* ---- correlation ---- */
 
