@@ -469,9 +469,6 @@ static void put_command(const page *p) {
 static void put_versions(const page *p) {
     SF_HTML_BLOCK(p->file, "Mesh and versions");
     SF_HTML_TABLE table = sf_html_table_begin(p->file, NULL);
-    SF_OWNED char *comment = sf_origin_title(p->case_text);
-    if (comment && *comment)
-        sf_html_fact(&table, "comment of the case", "%s", comment);
     put_mesh(p, &table);
     put_version(p, &table, "softfall-pre", "/provenance/model");
     put_version(p, &table, "softfall-solve", "/provenance");
