@@ -107,7 +107,7 @@ for second in $(seq 60); do
     sleep 1
     ! grep -q http open.txt || break
 done
-python3 -c 'import sys, urllib.request; print(urllib.request.urlopen(sys.argv[1], timeout=60).read().decode())' \
+python3 -c 'import sys, urllib.request as web; print(web.build_opener(web.HTTPCookieProcessor()).open(sys.argv[1], timeout=60).read().decode())' \
     "$(grep -o 'http[^ ]*' open.txt)" >page.html
 kill -TERM $program
 wait $program
