@@ -81,6 +81,9 @@ static void a_figure_beyond_its_bound_is_a_remark_and_far_beyond_not_to_be_used(
         double *figure;
     } cases[] = {
         {"energy_error", &run.figures.energy_error},
+        {"momentum", &run.figures.momentum_error},
+        {"momentum", &run.figures.momentum_error_space},
+        {"momentum", &run.figures.angular_momentum_error},
         {"stabilisation", &run.figures.stabilisation_energy_fraction},
         {"contact", &run.figures.contact_energy_fraction},
         {"anvil", &run.figures.max_mean_strain},

@@ -24,8 +24,8 @@ static int64_t count_bins(sf_grid *grid, const double low[3], const double high[
 }
 
 /* Sets all but the arrays. The number of bins is bounded: one outsized support would make every bin huge, and
- * one tiny one would make too many. Points on a line or in a plane need wider bins than the volume of their box
- * says. Returns the number. */
+ * one tiny one would make too many. Points on a line or in a plane need wider bins than the volume of their
+ * box says. Returns the number. */
 static int64_t lay_bins(sf_grid *grid, int64_t count, const double *position, const double *support) {
     double low[3], high[3], volume = 1;
     *grid = (sf_grid){.position = position, .support = support};
@@ -35,6 +35,8 @@ static int64_t lay_bins(sf_grid *grid, int64_t count, const double *position, co
     for (int c = 0; c < 3; c++)
         volume *= high[c] - low[c] + grid->width;
     grid->width = fmax(grid->width, cbrt(volume / (4.0 * (double)count + 64)));
+    if (!(grid->width > 0)) /* points without supports at one place or in a plane */
+        grid->width = 1;
     memcpy(grid->origin, low, sizeof low);
     while (count_bins(grid, low, high) > 4 * count + 64)
         grid->width *= 1.25;

@@ -24,6 +24,10 @@
       "`energy_error`", \
       "energy that appears or disappears falsifies the deceleration", \
       .refuse = 0.05, .percent = true) \
+    X(momentum, 1e-6, "error of the momentum", \
+      "the largest of `momentum_error`, `momentum_error_space` and `angular_momentum_error`, magnitudes", \
+      "a force acts without its counterpart, where rounding alone is allowed: please report the case as a fault of softfall", \
+      .refuse = 1e-3) \
     X(edge, 0.1, "edge: change of a_max for 1 % of speed or thickness", \
       "the larger of `a_max_change_by_speed` and `a_max_change_by_thickness`, magnitudes", \
       "the foam is about to lock up: what no laboratory can set as closely decides the peak", \

@@ -55,6 +55,8 @@ static double notes_value(const sf_results *r, const sf_figures *f) {
         return expression;                                                                                   \
     }
 SHORT_VALUE(energy_error, f->energy_error)
+SHORT_VALUE(momentum, fmax(fabs(f->momentum_error),
+                           fmax(fabs(f->momentum_error_space), fabs(f->angular_momentum_error))))
 SHORT_VALUE(stabilisation, f->stabilisation_energy_fraction)
 SHORT_VALUE(contact, f->contact_energy_fraction)
 SHORT_VALUE(dissipation, f->negative_dissipation)

@@ -507,21 +507,33 @@ void sf_report_title(const sf_results *r, char *title, size_t size) {
                  r->missile_speed, r->thickness * 1e3);
 }
 
+/* Says how much of the drop is modelled. */
+static const char *model_of(const sf_results *r) {
+    if (r->axisymmetric)
+        return "section of a body of revolution";
+    if (r->symmetry_factor == 1)
+        return "whole model";
+    return r->symmetry_factor == 4 ? "quarter model" : "half model";
+}
+
+static const char *way_of(const sf_results *r) {
+    if (r->driven)
+        return "moved as given";
+    return r->turns ? "free to turn" : "guided along a line";
+}
+
 /* Writes what was dropped on what, by the values of the run, as comments of the case may be older. */
 static void put_subtitle(const page *p, char *text, size_t size) {
-    const sf_results *r = p->results;
     sf_origin_key file, base;
-    const char *name = "a missile", *model = r->symmetry_factor == 4 ? "quarter model" : "half model";
+    const char *name = "missile";
     char layers[48] = "";
-    if (sf_origin_find(p->parameters, "geometry.missile_file", &file))
+    if (sf_origin_find(p->parameters, "geometry.missile_file", &file) && *file.value)
         name = strrchr(file.value, '/') ? strrchr(file.value, '/') + 1 : file.value;
-    if (r->layer_count > 0)
-        snprintf(layers, sizeof layers, " in %d layers", r->layer_count);
-    if (r->axisymmetric || r->symmetry_factor == 1)
-        model = r->axisymmetric ? "section of a body of revolution" : "whole model";
-    snprintf(text, size, "%s, %s, on foam of %.4g kg/m³%s, %s; %s.", name,
-             r->turns ? "free to turn" : "guided along a line", r->density, layers,
-             sf_origin_find(p->parameters, "pad.base", &base) ? base.value : "held at its base", model);
+    if (p->results->layer_count > 0)
+        snprintf(layers, sizeof layers, " in %d layers", p->results->layer_count);
+    bool told = sf_origin_find(p->parameters, "pad.base", &base);
+    snprintf(text, size, "%s, %s, on foam of %.4g kg/m³%s, base %s; %s.", name, way_of(p->results),
+             p->results->density, layers, told ? base.value : "held", model_of(p->results));
 }
 
 static sf_status begin_page(page *p, const sf_staging *output, sf_error *err) {
