@@ -35,8 +35,10 @@ def declarations():
 
 
 def functions_and_uses(build):
-    """The units that define each function, and the object files that use each symbol without defining it."""
+    """The units that define each function, and the object files that use each symbol without defining it. Objects whose
+    source is gone are left over from an older tree and use nothing."""
     objects = [os.path.join(folder, name) for folder, _, names in os.walk(build) for name in names if name.endswith(".c.o")]
+    objects = [path for path in objects if os.path.exists(re.sub(r"CMakeFiles/[^/]*\.dir/|\.o$", "", os.path.relpath(path, build)))]
     unit_of_object = {path: unit for unit, path in circles.object_files(build).items()}
     listing = subprocess.run(["nm", "-A", *objects], capture_output=True, text=True, check=True).stdout
     functions, uses = {}, {}

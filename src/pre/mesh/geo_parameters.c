@@ -17,17 +17,26 @@ static bool is_word(char c) {
     return isalnum((unsigned char)c) || c == '_' || c == '.';
 }
 
-sf_geo_token sf_geo_token_next(const char **text) {
+/* The text of a .geo file, cut as gmsh cuts it: words (names and numbers), texts in quotes, and single marks;
+ * comments vanish. */
+typedef struct geo_token {
+    enum { GEO_END, GEO_WORD, GEO_TEXT, GEO_MARK } kind;
+    const char *begin; /* in the text; of a quoted one without its quotes */
+    size_t length;
+} geo_token;
+
+/* Returns the next token and moves `*text` behind it. */
+static geo_token token_next(const char **text) {
     const char *p = skip_blank(*text);
-    sf_geo_token t = {SF_GEO_MARK, p, 1};
+    geo_token t = {GEO_MARK, p, 1};
     if (*p == '\0') {
-        t = (sf_geo_token){SF_GEO_END, p, 0};
+        t = (geo_token){GEO_END, p, 0};
     } else if (*p == '"' || *p == '\'') {
         size_t length = strcspn(p + 1, *p == '"' ? "\"" : "'");
         *text = p + 1 + length + (p[1 + length] != '\0');
-        return (sf_geo_token){SF_GEO_TEXT, p + 1, length};
+        return (geo_token){GEO_TEXT, p + 1, length};
     } else if (is_word(*p)) {
-        t.kind = SF_GEO_WORD;
+        t.kind = GEO_WORD;
         while (is_word(p[t.length]))
             t.length++;
     }
@@ -35,7 +44,8 @@ sf_geo_token sf_geo_token_next(const char **text) {
     return t;
 }
 
-bool sf_geo_token_is(sf_geo_token t, const char *text) {
+/* True if it is that word or mark, or the content of a text in quotes. */
+static bool token_is(geo_token t, const char *text) {
     return t.length == strlen(text) && strncmp(t.begin, text, t.length) == 0;
 }
 
@@ -65,28 +75,27 @@ static double read_number(const char *text) {
  * Returns their number, 0 if there are none, too many, or others than plain numbers. */
 static int read_choices(const char *text, double choice[MOST_CHOICES]) {
     int count = 0;
-    if (!sf_geo_token_is(sf_geo_token_next(&text), "=") || !sf_geo_token_is(sf_geo_token_next(&text), "{"))
+    if (!token_is(token_next(&text), "=") || !token_is(token_next(&text), "{"))
         return 0;
-    for (sf_geo_token t = sf_geo_token_next(&text); !sf_geo_token_is(t, "Choices");
-         t = sf_geo_token_next(&text))
-        if (t.kind == SF_GEO_END || (t.kind == SF_GEO_MARK && strchr("{}", *t.begin)))
+    for (geo_token t = token_next(&text); !token_is(t, "Choices"); t = token_next(&text))
+        if (t.kind == GEO_END || (t.kind == GEO_MARK && strchr("{}", *t.begin)))
             return 0;
-    for (sf_geo_token t = sf_geo_token_next(&text); sf_geo_token_is(t, count ? "," : "{");) {
+    for (geo_token t = token_next(&text); token_is(t, count ? "," : "{");) {
         text = sf_decimal_read(skip_blank(text), &choice[count]);
         if (!text || ++count == MOST_CHOICES)
             return 0;
-        t = sf_geo_token_next(&text);
-        if (sf_geo_token_is(t, "=")) { /* the label of the value */
-            sf_geo_token_next(&text);
-            t = sf_geo_token_next(&text);
+        t = token_next(&text);
+        if (token_is(t, "=")) { /* the label of the value */
+            token_next(&text);
+            t = token_next(&text);
         }
-        if (sf_geo_token_is(t, "}"))
+        if (token_is(t, "}"))
             return count;
     }
     return 0;
 }
 
-static void add_name(name_list *list, sf_geo_token t, const char *text) {
+static void add_name(name_list *list, geo_token t, const char *text) {
     if (t.length >= SF_CASE_NAME_SIZE || list->count == MAX_NAMES)
         return;
     sf_geo_parameter *out = &list->at[list->count++];
@@ -103,16 +112,16 @@ static void read_constants(const char **text, name_list *list) {
     int depth = 0;
     bool expecting = false;
     do {
-        sf_geo_token t = sf_geo_token_next(text);
-        if (t.kind == SF_GEO_END)
+        geo_token t = token_next(text);
+        if (t.kind == GEO_END)
             return;
-        if (t.kind == SF_GEO_MARK && strchr("[({", *t.begin)) {
+        if (t.kind == GEO_MARK && strchr("[({", *t.begin)) {
             expecting = depth++ == 0;
-        } else if (t.kind == SF_GEO_MARK && strchr("])}", *t.begin)) {
+        } else if (t.kind == GEO_MARK && strchr("])}", *t.begin)) {
             depth--;
-        } else if (t.kind == SF_GEO_MARK && *t.begin == ',') {
+        } else if (t.kind == GEO_MARK && *t.begin == ',') {
             expecting = depth == 1;
-        } else if (t.kind == SF_GEO_WORD && expecting && depth == 1) {
+        } else if (t.kind == GEO_WORD && expecting && depth == 1) {
             add_name(list, t, *text);
             expecting = false;
         }
@@ -125,23 +134,23 @@ static bool is_spacing(const char *name) {
 
 /* True if a name is assigned a value that follows no spacing of DefineConstant; `text` is behind the name. */
 static bool is_set_alone(const char *text) {
-    sf_geo_token t = sf_geo_token_next(&text);
-    if (!sf_geo_token_is(t, "=") || *text == '=')
+    geo_token t = token_next(&text);
+    if (!token_is(t, "=") || *text == '=')
         return false;
     do {
         char word[SF_CASE_NAME_SIZE];
-        t = sf_geo_token_next(&text);
-        snprintf(word, sizeof word, "%.*s", t.kind == SF_GEO_WORD ? (int)t.length : 0, t.begin);
+        t = token_next(&text);
+        snprintf(word, sizeof word, "%.*s", t.kind == GEO_WORD ? (int)t.length : 0, t.begin);
         if (is_spacing(word))
             return false;
-    } while (t.kind != SF_GEO_END && !sf_geo_token_is(t, ";"));
+    } while (t.kind != GEO_END && !token_is(t, ";"));
     return true;
 }
 
 static void scan(const char *text, name_list *list) {
-    for (sf_geo_token t = {SF_GEO_MARK, NULL, 0}; t.kind != SF_GEO_END;) {
-        t = sf_geo_token_next(&text);
-        SF_PRINTED(name, SF_CASE_NAME_SIZE, "%.*s", t.kind == SF_GEO_WORD ? (int)t.length : 0, t.begin);
+    for (geo_token t = {GEO_MARK, NULL, 0}; t.kind != GEO_END;) {
+        t = token_next(&text);
+        SF_PRINTED(name, SF_CASE_NAME_SIZE, "%.*s", t.kind == GEO_WORD ? (int)t.length : 0, t.begin);
         list->others |= strcmp(name, "Include") == 0 || strcmp(name, "Merge") == 0;
         if (strcmp(name, "DefineConstant") == 0)
             read_constants(&text, list);
