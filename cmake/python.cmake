@@ -9,7 +9,7 @@ foreach(module ${python_modules} py.typed)
     install(FILES ${CMAKE_SOURCE_DIR}/python/softfall/${module} DESTINATION ${SOFTFALL_PYTHON_DIR}/${folder} COMPONENT python)
 endforeach()
 # The command softfall, and those of its tasks that are programs of their own, too.
-set(SOFTFALL_WORD_PROGRAMS softfall-protocol softfall-rows softfall-serve softfall-sweep)
+set(SOFTFALL_WORD_PROGRAMS softfall-cfh softfall-protocol softfall-rows softfall-serve softfall-sweep)
 set(SOFTFALL_PYTHON_PROGRAMS softfall ${SOFTFALL_WORD_PROGRAMS})
 foreach(program ${SOFTFALL_PYTHON_PROGRAMS})
     set(source ${program}.in)

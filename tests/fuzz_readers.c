@@ -5,7 +5,6 @@
 #include "material/laws.h"
 
 #include "study/batch.h"
-#include "study/cfh/points.h"
 #include "material/curve.h"
 #include "study/fit/compression/compression_config.h"
 #include "study/fit/drop/drop_fit.h"
@@ -83,11 +82,6 @@ static sf_status read_reference(const char *path, sf_error *err) {
     if (sf_reference_read(&options, &reference, &coarse) == SF_OK)
         sf_reference_free(&reference);
     return err->status;
-}
-
-static sf_status read_rig(const char *path, sf_error *err) {
-    sf_cfh_rig rig;
-    return sf_cfh_rig_read(path, &rig, err);
 }
 
 static sf_status read_fit(const char *path, sf_error *err) {
@@ -199,7 +193,6 @@ static const fuzz_reader readers[] = {
     {"curve", "curve.csv", read_curve},
     {"motion", "fuzz.csv", read_motion},
     {"reference", "reference.csv", read_reference},
-    {"rig", "rig.csv", read_rig},
     {"fit", "fit.cfg", read_fit},
     {"model", "model.h5", read_model},
     {"results", "results.h5", read_results},

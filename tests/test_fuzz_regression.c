@@ -70,7 +70,6 @@ static void cut_and_changed_seeds_are_read_or_refused(void **state) {
                  {"curve", "foam.csv", CUTS, 23},
                  {"motion", "press.csv", 11, 26},
                  {"reference", "measured.csv", 12, 25},
-                 {"rig", "pairs.csv", 11, 21},
                  {"fit", "drops.cfg", CUTS, 27},
                  {"compression", "fit.cfg", CUTS, 28},
                  {"pressing", "slow.csv", 11, 20},

@@ -70,11 +70,6 @@ static const struct {
     {"fit", "drop drop-case.cfg -o new"},
     {"fit", "drop drop-curve.cfg -o new"},
     {"fit", "drop predict.cfg -o new"},
-    {"cfh", "hostile -o new"},
-    {"cfh", "include.cfg -o new"},
-    {"cfh", "good.cfg -o new --material hostile"},
-    {"cfh", "good.cfg -o new --rig hostile"},
-    {"cfh", "good.cfg -o new --set material.curve=hostile"},
     {"batch", "hostile"},
     {"batch", "hostile --group 00001-0"},
 };

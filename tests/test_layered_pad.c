@@ -127,25 +127,6 @@ static void large_slips_are_noted(void **state) {
     assert_int_equal(program_shell(p, "grep -q 'layers slide' out/summary.json").code, 1);
 }
 
-/* softfall-cfh takes a case of layers; what identifies one material does not. */
-static void campaigns_take_layers_or_refuse_them(void **state) {
-    const program_place *p = *state;
-    static const char *const words =
-        "--set geometry.parameters.fine_spacing=20.0 --set geometry.parameters.outer_spacing=20.0 "
-        "--set geometry.parameters.side=160.0 --set geometry.parameters.zone_side=160.0 "
-        "--set geometry.parameters.upper=40.0 --set geometry.parameters.cover=20.0 "
-        "--set pad.mesh_error_limit=1";
-    program_result r = program_run(
-        p, "cfh", "examples/layers/case.cfg -o cfh --heights '0.2 m,0.3 m,0.4 m,0.5 m' %s", words);
-    if (r.code != 0 || !strstr(r.out, "4 drops simulated"))
-        fail_msg("softfall-cfh ended with %d: %s", r.code, r.err);
-    r = program_run(p, "cfh", "examples/layers/case.cfg -o cfh2 --material examples/layers/hard_foam.cfg %s",
-                    words);
-    if (r.code == 0 || r.code >= 128 || !strstr(r.err, "no place for one material") ||
-        !strstr(r.err, "--set materials.NAME=@FILE"))
-        fail_msg("exit code %d: %s", r.code, r.err);
-}
-
 /* A file may stand in place of a layer's group, and a single layer is a pad of one material. */
 static void layers_read_like_the_one_material(void **state) {
     const program_place *p = *state;
@@ -362,7 +343,6 @@ int main(void) {
         cmocka_unit_test(summary_tells_strain_and_energy_by_layer),
         cmocka_unit_test(threads_and_restarts_leave_every_bit),
         cmocka_unit_test(large_slips_are_noted),
-        cmocka_unit_test(campaigns_take_layers_or_refuse_them),
         cmocka_unit_test(layers_read_like_the_one_material),
         cmocka_unit_test(layers_that_cannot_be_meant_are_refused),
         cmocka_unit_test(layers_that_do_not_share_faces_are_refused),

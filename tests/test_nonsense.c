@@ -331,17 +331,6 @@ static void command_lines_and_files(void **state) {
 }
 
 static void campaigns(void **state) {
-    static const nonsense cfh[] = {
-        {"--height '3 kg'", {"--height", "is a mass", "expected a length"}},
-        {"--height '-1 m'", {"--height", "-1 m", "outside 1 cm to 100 m"}},
-        {"--max-height '1 km'", {"--max-height", "1 km", "outside 1 cm to 100 m"}},
-        {"--limit-g nan", {"--limit-g nan", "not a positive number"}},
-        {"--limit-hic -3", {"--limit-hic -3", "not a positive number"}},
-        {"--heights '1 m'", {"--heights", "1 heights", "at least"}},
-        {"--set missile.velocity='3 m/s'", {"missile.velocity", "the drop height decides the speed"}},
-        {"--rig files/rig.csv", {"rig.csv", "9 m/s from 1 m", "faster than free fall"}},
-        {"--material files/none.cfg", {"files/none.cfg", "No such file"}},
-    };
     static const nonsense fit[] = {
         {"files/minus.cfg", {"minus.cfg:1", "a_max_g is -3", "0.001 to 1e+07"}},
         {"files/nomaterial.cfg", {"nomaterial.cfg:1", "none.cfg", "No such file"}},
@@ -350,7 +339,6 @@ static void campaigns(void **state) {
          {"outside.cfg:1", "\"../f\"", "no slashes"}}, /* would leave the output directory */
         {"files/absent.cfg", {"absent.cfg", "No such file"}},
     };
-    REFUSE_ALL(*state, "cfh", "good.cfg -o new", cfh);
     REFUSE_ALL(*state, "fit", "drop -o new", fit);
 }
 

@@ -69,17 +69,15 @@ static void keys_of_the_case_are_read_with_all_kinds_of_values(void **state) {
     assert_false(sf_origin_find("", "material.E", &key));
 }
 
-static void comments_give_title_and_origin_of_the_material(void **state) {
+static void comments_give_the_origin_of_the_material(void **state) {
     (void)state;
     static const char text[] =
         "# EVA pad\n#  second line\n\n# not this\ngeometry: {\n# nor this\n};\n"
         "material: {\n# from ../foam.cfg:\n# from the supplier's data sheet\n# from 2024\n# Foam of 35 kg/m3\nE = \"1 MPa\";\n# informed to 0.8\n"
         "};\nmissile: { # nor this\n};\n";
-    char *title = sf_origin_title(text), *origin = sf_origin_material(text, NULL);
-    assert_string_equal(title, "EVA pad\nsecond line\n");
+    char *origin = sf_origin_material(text, NULL);
     assert_string_equal(origin,
                         "from the supplier's data sheet\nfrom 2024\nFoam of 35 kg/m3\ninformed to 0.8\n");
-    free(title);
     free(origin);
     char replaced[600];
     snprintf(replaced, sizeof replaced,
@@ -352,7 +350,7 @@ int main(void) {
         cmocka_unit_test(texts_are_escaped_and_valid_utf8),
         cmocka_unit_test(a_picture_keeps_no_prologue_and_its_own_ids),
         cmocka_unit_test(keys_of_the_case_are_read_with_all_kinds_of_values),
-        cmocka_unit_test(comments_give_title_and_origin_of_the_material),
+        cmocka_unit_test(comments_give_the_origin_of_the_material),
         cmocka_unit_test(bands_of_a_linear_field_have_their_areas),
         cmocka_unit_test(the_cut_is_the_section_of_the_pad),
         cmocka_unit_test(the_time_axis_ends_with_the_pulse),

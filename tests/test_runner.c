@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a campaign does with a drop that fails, is interrupted or goes on. The programs are scripts that
- * behave as softfall-pre and softfall-solve do then; test_restart and test_cfh_program have the programs
+ * behave as softfall-pre and softfall-solve do then; test_restart has the programs
  * themselves. */
 #include "model_fixture.h"
 #include "program_fixture.h"

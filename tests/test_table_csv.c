@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables of two columns (io/table_csv.h). The sentences of its users: test_case_refusals, test_compare,
- * test_cfh; the files of laboratories, which softfall read makes such tables of:
+ * `softfall cfh`; the files of laboratories, which softfall read makes such tables of:
  * tests/python/test_laboratory.py. */
 #include "program_fixture.h"
 

@@ -1,20 +1,20 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many drops until a decision: the advice of softfall-protocol against a fixed plan, on synthetic foams (docs/protocols.md).
+"""How many drops until a decision: the advice of softfall protocol against a fixed plan, on synthetic foams (docs/protocols.md).
 
     tools/advice_study.py [FOAMS] [-o DIR]
 
 A foam is a draw of examples/materials/eva35_posterior whose loading curve is bent by a smooth random factor of 6 % (standard deviation), which no
-form of the fit has. Its drops follow its columns, corrected as softfall-cfh corrects them, with random errors of the model and, from drop to drop, the
-scatter of speed and thickness. A quarter of the foams locks up earlier than any draw, between 60 and 100 % of the height asked for: above it the figures
+form of the fit has. Its drops are simulated and read between their heights, with random errors of the model and, from drop to drop, the scatter of
+speed and thickness. A quarter of the foams locks up earlier than any draw, between 60 and 100 % of the height asked for: above it the figures
 are higher by the third to twelfth power of the ratio of heights. The question is whether the pad passes from a height, drawn between the 5 and 95 % quantiles of the critical height
 that the posterior expects. Fixed plan: three drops from that height, decided by the mean of the second and the third. The last plan is decided by the
 larger probability after three drops, where the bound is not met.
 """
 import argparse
 import csv
+import dataclasses
 import pathlib
-import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -22,14 +22,15 @@ sys.path.insert(0, str(ROOT / "python"))
 
 import numpy as np  # noqa: E402
 
-from softfall import advice  # noqa: E402
+from softfall import advice, cfh_command  # noqa: E402
+from softfall.protocol_places import place_of  # noqa: E402
 
 POSTERIOR = ROOT / "examples/materials/eva35_posterior"
 LIMITS = (200.0, 1000.0)
 BEND, LOCKED = 0.06, 0.25
 # bound of a wrong decision (None: fixed), the most drops, and whether the larger probability decides after them
 PLANS = ((None, 3, True), (0.05, 12, False), (0.1, 3, True))
-COARSE = ["--set", "geometry.parameters.fine_spacing=10", "--set", "geometry.parameters.outer_spacing=20", "--set", "pad.mesh_error_limit=1"]
+COARSE = ["--set=geometry.parameters.fine_spacing=10", "--set=pad.mesh_error_limit=1"]
 
 
 def bend(strain, random):
@@ -54,20 +55,18 @@ def make_foams(folder, count, random):
 
 
 def search(output, posterior):
-    """Runs softfall-cfh on the 50 mm pad, whose drops are the same for both posteriors."""
-    subprocess.run([str(ROOT / "build/bin/softfall-cfh"), str(ROOT / "examples/eva50-v4.5/case.cfg"), "-o", str(output), "--force",
-                    "--posterior", str(posterior), *COARSE], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    return advice.read_place("centre", output)
+    """Simulates the 50 mm pad with every draw of a posterior."""
+    words = [str(ROOT / "examples/eva50-axisymmetric/case.cfg"), f"--output={output}", "--force", f"--posterior={posterior}", *COARSE]
+    return place_of("centre", cfh_command.find(cfh_command.parser("advice_study").parse_args(words), lambda text: None, lambda text: None, "advice_study"))
 
 
 def measure(foam, pad, height, random):
-    """Returns the figures of a drop of a foam; NaN where it collapses."""
-    y = foam.predict("centre", height)[:, pad] + foam.scatter("centre", height) * random.standard_normal()
-    return tuple(np.where(np.isinf(y), np.nan, np.exp(np.minimum(y, 50))))
+    """Returns the figures of a drop of a foam."""
+    return tuple(np.exp(np.minimum(foam.predict("centre", height)[:, pad] + foam.scatter("centre", height) * random.standard_normal(), 50)))
 
 
 def passes(figures):
-    return all(not np.isnan(value) and value < limit for value, limit in zip(figures, LIMITS))
+    return all(value < limit for value, limit in zip(figures, LIMITS))
 
 
 def decide(place, question, most, forced, foam, pad, random):
@@ -111,7 +110,7 @@ def distances(place, synthetic, low, high):
     """Returns the root mean squares of ln(figure) between foams and the draws nearest to them, at heights between two."""
     heights = np.linspace(np.log(low), np.log(high), 9)
     foams, draws = (np.array([[np.interp(heights, p.log_height, row) for row in p.value[c]] for c in range(2)]) for p in (synthetic, place))
-    away = np.nan_to_num(foams[:, :, None] - draws[:, None], nan=np.inf)  # [2][foams][draws][heights]
+    away = foams[:, :, None] - draws[:, None]  # [2][foams][draws][heights]
     square = (away**2).mean(axis=3)
     nearest = (square / np.reshape(advice.FORM, (2, 1, 1)) ** 2).sum(axis=0).argmin(axis=1)
     return np.sqrt(square[:, np.arange(nearest.size), nearest].mean(axis=1))
@@ -123,8 +122,9 @@ def main():
     parser.add_argument("-o", default=str(ROOT / "out/advice"))
     o = parser.parse_args()
     output, random, n = pathlib.Path(o.o), np.random.default_rng(7), o.foams
-    make_foams(output / "foams", max(n, 100), random)  # softfall-cfh takes 100 draws and more
+    make_foams(output / "foams", max(n, 100), random)  # an interval needs 100
     place, synthetic = search(output / "posterior", POSTERIOR), search(output / "synthetic", output / "foams")
+    synthetic = dataclasses.replace(synthetic, bound=np.full(synthetic.bound.shape, np.inf))  # a real drop has figures at every height
     foam = advice.Pads([synthetic], seed=11, form=(0, 0))  # it has a form of its own
     low, high = np.quantile(advice.Pads([place]).crossing("centre", LIMITS), [0.05, 0.95])
     pads = np.arange(n) * advice.REPEATS + random.integers(advice.REPEATS, size=n)

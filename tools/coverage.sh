@@ -32,7 +32,7 @@ count --filter src/ --csv | awk -F, '
     function row(name, n, m) { printf "| %-8s | %6d | %6d | %6.1f |\n", name, n, m, 100 * m / n }
     END {
         print "| room     |  lines |    run |      % |\n|---|---:|---:|---:|"
-        count = split("core case io pre solver post campaign fit cfh", order, " ")
+        count = split("core case io pre solver post campaign fit", order, " ")
         for (k = 1; k <= count; k++) {
             row(order[k], lines[order[k]], run[order[k]])
             all += lines[order[k]]

@@ -21,7 +21,7 @@ tools/thin_posterior.py "$out/posterior" 100 examples/materials/eva35_posterior
 page=out/validation.md
 cp docs/validation.md "$page"
 tools/report_sections.py "$out/report.html" "$page" comparison
-PAGE=$page POSTERIOR=$out/posterior tools/cfh_examples.sh --docs
+POSTERIOR=$out/posterior tools/cfh_examples.sh --docs
 tools/compare_prediction.py "$page"
 echo "written: examples/materials/eva35.cfg, docs/cfh.md, $page; the picture of the fit is $out/fit.png"
 tools/compare_page.sh docs/validation.md "$page"

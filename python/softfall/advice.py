@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The next measurement: what each one is expected to tell about the result of a protocol (docs/protocols.md, "The next drop").
 
-The pad is one of many: each draw of the foam's posterior, as softfall-cfh corrects its columns, repeated with random errors of the model. A
-measurement gives weights to them; what it is worth is the expected fall of the loss, over measurements that the present weights predict.
+The pad is one of many: each draw of the foam's posterior, by drops of its own, repeated with random errors of the model. A measurement gives
+weights to them; what it is worth is the expected fall of the loss, over measurements that the present weights predict.
 """
 from __future__ import annotations
 
-import csv
-import json
 import math
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, Iterator, Mapping, Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 
@@ -25,7 +22,6 @@ SAME = 0.01  # of a logarithm: drops of one pad are never told apart by less
 TEST_STRAINS = (0.3, 0.5, 0.7)  # at which a compression test tells the stress
 FORM = (0.04, 0.08)  # standard deviations of ln(figure) of a foam about the draw that is nearest to it (docs/protocols.md)
 LENGTH = 0.3  # of ln(height), over which errors that change with the height do so
-UNKNOWN_COLUMNS = "the error of the columns is not known, as no draw was simulated with success"
 LOCKS, EARLIEST, RISE = 0.25, 0.5, (3.0, 12.0)  # share of the pads that lock up before the draws, from which part of the critical height on, and with which power of the height more
 
 
@@ -84,18 +80,17 @@ class Advice:
 
 @dataclass(frozen=True)
 class Place:
-    """What softfall-cfh knows of a condition, a position and a missile: for each draw ln(figure) over ln(height), the errors of the model, the scatter."""
+    """What is known of a condition, a position and a missile: for each draw ln(figure) over ln(height), the errors of the model, the scatter."""
 
     name: str
     log_height: Array  # [grid]
-    value: Array  # [2][draws][grid] ln; inf: the columns collapse
+    value: Array  # [2][draws][grid] ln
+    bound: Array  # [draws] m: above it the draw has no drop that can be used, and counts as beyond the limits; inf: there is no such height
     shared: Array  # [2][draws]
     own_sd: Array  # [2][draws]
     scatter: Array  # [2][grid], standard deviation of ln(figure) from drop to drop
-    mesh: Array  # [2]
-    fit: Array  # [2]
-    columns_sd: Array  # [2][draws] standard deviation of the corrected columns, but for Student's t
-    freedom: int  # degrees of freedom of that; 0: it is not known
+    mesh: Array  # [2], standard deviation of ln(figure) by the mesh
+    between: Array  # [2], that of the interpolation between the drops of a draw
     notes: tuple[str, ...] = ()  # what is not known of it
     missile: str = ""  # another one than that of the protocol: nothing is judged by its drops
     cost: float = 1.0  # of a drop
@@ -105,54 +100,6 @@ class Place:
     def ends(self) -> tuple[float, float]:
         """The heights (m) between which the drops of the draws are known."""
         return math.exp(self.log_height[0]), math.exp(self.log_height[-1])
-
-
-def _columns(path: Path) -> dict[str, Array]:
-    """Returns the columns of a CSV file of softfall-cfh; empty cells are NaN."""
-    with open(path, newline="", encoding="utf-8") as stream:
-        rows = list(csv.reader(stream))
-    table = np.array([[float(cell) if cell else math.nan for cell in row] for row in rows[1:]]).reshape(-1, len(rows[0]))
-    return {name: table[:, k] for k, name in enumerate(rows[0])}
-
-
-def read_place(name: str, folder: Path, missile: str = "", cost: float = 1.0) -> Place:
-    """Reads the output of softfall-cfh --posterior. InputError: it has no draws."""
-    summary = json.loads((folder / "cfh.json").read_text(encoding="utf-8"))
-    posterior = summary["posterior"] or {}
-    if "draws" not in posterior:
-        raise InputError(f"{folder}: no draws of the foam, which advice needs: {posterior.get('no_interval') or 'it was made without --posterior'}")
-    curves, draws, band = (_columns(folder / f"cfh_{part}.csv") for part in ("curves", "draws", "band"))
-    height = band["height_m"]
-    count = len(draws["draw_1"])
-    value = np.full((2, count, height.size), np.inf)
-    at = np.searchsorted(height, curves["height_m"] * (1 - 1e-7)), curves["draw_1"].astype(int) - 1
-    for c, key in enumerate(("a_max_g", "hic_1")):
-        value[c, at[1], at[0]] = np.log(curves[key])
-    error = np.nan_to_num(np.array([draws[key] for key in ("a_max_shared_1", "hic_shared_1", "a_max_sd_1", "hic_sd_1")]))
-    scatter = np.maximum(np.nan_to_num(np.array([band["a_max_scatter_1"], band["hic_scatter_1"]])), SAME)
-    fit = np.array([posterior.get(f"fit_scatter_{key}") or 0.0 for key in ("a_max", "hic")])
-    columns_sd = np.nan_to_num(np.array([draws["a_max_columns_sd_1"], draws["hic_columns_sd_1"]]))
-    mesh = (posterior["expected_mesh_error"] or 0.0) * posterior["mesh_error_factor"] * np.array([1.0, posterior["mesh_error_hic_factor"]])
-    freedom = int(posterior["columns_error"]["degrees_of_freedom"])
-    return Place(name, np.log(height), value, error[:2], error[2:], scatter, mesh, fit, columns_sd, freedom,
-                 tuple(_doubts(name, posterior, freedom, band)), missile, cost, summary["critical_fall_height"]["highest_simulated_m"] or math.inf)
-
-
-def _doubts(name: str, posterior: Mapping[str, Any], freedom: int, band: Mapping[str, Array]) -> Iterator[str]:
-    """Yields what softfall-cfh does not know of a place, in sentences."""
-    failed = sum(check["failed"] for check in posterior["checks"])
-    if freedom == 0:
-        yield f"{name}: too few draws were simulated with success: the error of the columns is not known, and nothing is decided"
-    elif failed:
-        yield f"{name}: {failed} of {len(posterior['checks'])} simulated draws failed: there the columns are not confirmed"
-    if posterior["draws_beyond_simulated"]:
-        yield f"{name}: {posterior['draws_beyond_simulated']} draws reach a limit outside of the simulated heights, where the correction of the columns is the nearest one"
-    if posterior["expected_mesh_error"] is None:
-        yield f"{name}: the error of the mesh is not known, and is left out"
-    if not posterior["response_errors"]:
-        yield f"{name}: the draws state no errors of the responses, which are left out"
-    if np.isnan(band["a_max_scatter_1"]).any():
-        yield f"{name}: the scatter from drop to drop is not known; {100 * SAME:g} % is taken"
 
 
 def _bell(a: Array, b: Array) -> Array:
@@ -197,18 +144,13 @@ class Pads:
         self.offset, self.value = {}, {}  # ln [2][pads], and [2][pads][grid] without it
         n, mesh = self.draw.size, random.standard_normal(self.draw.size)  # all places are of one pad, and of one way to compute it
         smooth, forms = _Smooth(places), dict[str, Array]()
-        student = {"": random.standard_t(max(1, min(place.freedom for place in self.judged)), n)}
         for place in sorted(places, key=lambda place: place.missile != ""):
             forms.setdefault(place.missile, smooth.draw(n, random))
             own = place.own_sd[:, self.draw, None] * smooth.at(place.log_height, smooth.draw(n, random))
             self.value[place.name] = place.value[:, self.draw] + own + np.reshape(form, (2, 1, 1)) * smooth.at(place.log_height, forms[place.missile])
-            fit = place.fit[:, None] * random.standard_normal((2, n))
-            self.offset[place.name] = place.shared[:, self.draw] + place.mesh[:, None] * mesh + fit
-            if place.missile:  # draws state errors of the missile of their fit, and each missile has columns of its own
+            self.offset[place.name] = place.shared[:, self.draw] + place.mesh[:, None] * mesh + place.between[:, None] * random.standard_normal((2, n))
+            if place.missile:  # draws state errors of the missile of their fit
                 self.offset[place.name] += np.sqrt((place.shared**2).mean(axis=1, keepdims=True)) * random.standard_normal((2, n))
-                if place.missile not in student:
-                    student[place.missile] = random.standard_t(max(1, place.freedom), n)
-            self.offset[place.name] += place.columns_sd[:, self.draw] * student[place.missile]
         part = np.where(random.random(n) < (0 if limits is None else LOCKS), random.uniform(EARLIEST, 1, n), np.inf)
         self.rise, self.lock = random.uniform(*RISE, n), {place.name: np.full(n, np.inf) for place in places}  # m, where a pad locks up
         if limits is not None:
@@ -221,18 +163,21 @@ class Pads:
         return [place for place in self.places.values() if not place.missile]
 
     def predict(self, place: str, height: float) -> Array:
-        """Returns ln(figure) [2][pads] at a height (m); inf: the foam collapses."""
-        p = self.places[place]
-        made = np.empty((2, self.draw.size))
-        at = np.clip(math.log(height), p.log_height[0], p.log_height[-1])
-        k = np.clip(np.searchsorted(p.log_height, at) - 1, 0, p.log_height.size - 2)
-        part = (at - p.log_height[k]) / (p.log_height[k + 1] - p.log_height[k])
-        for c in range(2):
-            low, high = self.value[place][c][:, k], self.value[place][c][:, k + 1]
-            with np.errstate(invalid="ignore"):
-                made[c] = np.where(np.isinf(high) & (part > 0), np.inf, low + np.where(part > 0, part * (high - low), 0)) + self.offset[place][c]
-        locked: Array = made + self.rise * np.maximum(0, math.log(height) - np.log(self.lock[place]))
-        return locked
+        """Returns ln(figure) [2][pads] at a height (m)."""
+        grid, value = self.places[place].log_height, self.value[place]
+        at = np.clip(math.log(height), grid[0], grid[-1])
+        k = int(np.clip(np.searchsorted(grid, at) - 1, 0, grid.size - 2))
+        part = (at - grid[k]) / (grid[k + 1] - grid[k])
+        made: Array = (1 - part) * value[..., k] + part * value[..., k + 1] + self.offset[place]
+        made += self.rise * np.maximum(0, math.log(height) - np.log(self.lock[place]))
+        return made
+
+    def passes(self, place: str, height: float, limits: Sequence[float | None]) -> Array:
+        """Returns whether a drop from a height (m) stays below the limits [pads]; one that no draw of the pad has does not."""
+        below = self.places[place].bound[self.draw] > height
+        for value, limit in zip(self.predict(place, height), limits):
+            below &= value < math.log(limit) if limit is not None else True
+        return np.asarray(below)
 
     def locking(self, low: Mapping[str, float], high: float) -> float:
         """Returns the probability that the pad locks up below a height (m) at any place of the protocol's missile, from its own `low` on."""
@@ -246,19 +191,19 @@ class Pads:
 
     def crossing(self, place: str, limits: Sequence[float | None]) -> Array:
         """Returns the height (m) [pads] where the first limit is reached; inf: at none of the heights looked at; 0: at all of them."""
-        p, lowest = self.places[place], np.full(self.draw.size, np.inf)
+        p = self.places[place]
+        lowest: Array = p.bound[self.draw]
         grid = np.exp(np.linspace(p.log_height[0], p.log_height[-1], 4 * p.log_height.size))
         values = np.array([self.predict(place, h) for h in grid])  # [grid][2][pads]
         for c, limit in enumerate(limits):
             if limit is None:
                 continue
             over = values[:, c] >= math.log(limit)
-            first = np.where(over.any(axis=0), over.argmax(axis=0), grid.size - 1)
+            first = over.argmax(axis=0)
             before = np.maximum(first - 1, 0)
             low, high = (np.take_along_axis(values[:, c], k[None], axis=0)[0] for k in (before, first))
             with np.errstate(invalid="ignore", divide="ignore"):
-                part = np.where(np.isfinite(high) & (high > low), (math.log(limit) - low) / (high - low), 1.0)
-            found = grid[before] * (grid[first] / grid[before]) ** np.clip(part, 0, 1)
+                found = grid[before] * (grid[first] / grid[before]) ** np.clip((math.log(limit) - low) / (high - low), 0, 1)
             lowest = np.minimum(lowest, np.where(over[0], 0.0, np.where(over.any(axis=0), found, np.inf)))
         return lowest
 
@@ -297,15 +242,13 @@ class Pads:
 
 
 def _log_likelihood(measured: Array, predicted: Array, sd: Array) -> Array:
-    """Returns ln of the likelihood [pads] of the logarithms of two figures; a NaN is no figure.
+    """Returns ln of the likelihood [pads] of the logarithms of two figures, of which at least one is known; a NaN is no figure.
 
     What scatters from drop to drop, speed and thickness, moves all figures of a drop together: two tell no more than one, so their mean counts.
     """
     there = ~np.isnan(measured)
-    if not there.any():
-        return np.where(np.isinf(predicted).any(axis=0), 0.0, -1e4)  # a drop without figures is one in which the foam collapses
-    each = np.where(np.isinf(predicted), -1e4, -0.5 * ((measured[:, None] - np.where(np.isinf(predicted), 0, predicted)) / sd[:, None]) ** 2)
-    mean: Array = each[there].mean(axis=0)
+    each = -0.5 * ((measured[there, None] - predicted[there]) / sd[there, None]) ** 2
+    mean: Array = each.mean(axis=0)
     return mean
 
 
@@ -325,6 +268,11 @@ class Question:
     def decides(self) -> bool:
         """True if the answer is yes or no."""
         return bool(self.heights) or not math.isnan(self.required)
+
+    @property
+    def asked(self) -> tuple[float, ...]:
+        """The heights that are asked for (m)."""
+        return (*self.heights, *([] if math.isnan(self.required) else [self.required]))
 
 
 def _heights_of(pads: Pads, q: Question) -> Array:
@@ -350,9 +298,7 @@ class _Loss:
             self.passes = np.ones(self.height.size, bool)
             for place in pads.judged:
                 for h in q.heights:
-                    value = pads.predict(place.name, h)
-                    for c, limit in enumerate(q.limits):
-                        self.passes &= value[c] < math.log(limit) if limit is not None else True
+                    self.passes &= pads.passes(place.name, h, q.limits)
         else:
             self.passes = self.height >= q.required
 
@@ -385,7 +331,6 @@ def _truths(weight: Array) -> Array:
 def _drop_choice(pads: Pads, loss: _Loss, weight: Array, now: float, place: str, height: float) -> Choice:
     truths, sd, predicted = _truths(weight), pads.scatter(place, height), pads.predict(place, height)
     measured = predicted[:, truths] + sd[:, None] * np.random.default_rng(2).standard_normal(TRUTHS)
-    measured = np.where(np.isinf(measured), np.nan, measured)
     likelihood = np.stack([_log_likelihood(measured[:, m], predicted, sd) for m in range(TRUTHS)])
     after, cost = _expected(loss, weight, likelihood), pads.places[place].cost
     return Choice(f"a drop from {height:.4g} m, {place}", pads.places[place].missile or "drop", cost, after, (now - after) / cost, place, height)
@@ -405,7 +350,7 @@ def candidate_heights(place: Place, q: Question, median: float) -> list[float]:
     low, high = place.ends
     middle = min(max(median, low), high / 1.2)
     about = {float(f"{middle * part:.2g}") for part in np.linspace(0.6, 1.2, 9)}
-    asked = set() if place.missile else {*q.heights, *([] if math.isnan(q.required) else [q.required])}
+    asked = set() if place.missile else set(q.asked)
     return sorted(h for h in about | asked if low <= h <= high)
 
 
@@ -424,7 +369,7 @@ def advise(pads: Pads, q: Question, tests: Sequence[Test] = (), unshown: Sequenc
     """
     for place in pads.judged:
         low, high = place.ends
-        for h in (*q.heights, *([] if math.isnan(q.required) else [q.required])):
+        for h in q.asked:
             if not low <= h <= high:
                 raise InputError(f"{place.name}: {h:g} m lies outside of the heights looked at, {low:.3g} to {high:.3g} m, "
                                  "which reach from below to above the critical height of the draws")
@@ -434,8 +379,6 @@ def advise(pads: Pads, q: Question, tests: Sequence[Test] = (), unshown: Sequenc
     known = Advice(share, (height[0], height[1], height[2]), now, q.bound, None, False)
     if pads.misfits:
         return replace(known, height=(math.nan,) * 3, loss=math.nan, probability=math.nan, problem=pads.misfits)
-    if any(place.freedom == 0 for place in pads.judged):
-        return replace(known, problem=UNKNOWN_COLUMNS)
     if now <= q.bound and q.decides and share > 0.5 and unshown:
         return replace(known, expected=True, choices=[_drop_choice(pads, loss, weight, now, *at) for at in unshown if at[0] in pads.places])
     if now <= q.bound:

@@ -104,7 +104,7 @@ def curve(points: Sequence[Point], criterion: int) -> Any:
     return PchipInterpolator([math.log(p.height) for p in points], [math.log(p.value[criterion]) for p in points], extrapolate=False)
 
 
-def _usable(points: Sequence[Point], limits: Sequence[float]) -> tuple[list[Point], Point | None]:
+def usable(points: Sequence[Point], limits: Sequence[float]) -> tuple[list[Point], Point | None]:
     """Returns the drops that can be used below the lowest one without figures that exceeds a limit, and that one."""
     exceeding = next((p for p in points if p.excess(limits) == math.inf), None)
     return [p for p in points if not p.failed and (exceeding is None or p.height < exceeding.height)], exceeding
@@ -138,7 +138,7 @@ def evaluate(points: Sequence[Point], limits: Sequence[float]) -> Result:
     >>> evaluate([Point(h, (50 * h, 300 * h**2.5)) for h in (1.0, 1.5, 2.0)], (200, 1000)).verdict
     'found'
     """
-    good, exceeding = _usable(points, limits)
+    good, exceeding = usable(points, limits)
     if not good:
         return Result("below the lowest point", _exceeded(exceeding, limits), exceeding=exceeding) if exceeding else \
             Result("not determined", problem="no drop can be used: " + (points[0].note if points else "there is none"))
@@ -190,7 +190,7 @@ class Search:
             return self._free([self.first, self.first * math.exp(FIRST_GAP)], points), ""
         if len(points) >= MOST_DROPS:
             return [], "cap"
-        good, _ = _usable(points, self.limits)
+        good, _ = usable(points, self.limits)
         over = next((p for p in points if p.excess(self.limits) >= 0), None)
         below = next((p for p in reversed(good) if p.excess(self.limits) < 0 and (over is None or p.height < over.height)), None)
         if below is None:
@@ -312,7 +312,8 @@ class Bench:
 
     def _look(self, store: Store, tasks: dict[str, Task], queue: collections.deque[str], height: float, material: str | None) -> str:
         """Returns the key of a drop, which is taken from the store, or queued."""
-        overrides = [*([f"material=@{material}"] if material else []), *self.overrides, f"missile.velocity={speed_of(height):.12g} m/s"]
+        own = [text for text in self.overrides if not text.startswith("material=")] if material else self.overrides
+        overrides = [*([f"material=@{material}"] if material else []), *own, f"missile.velocity={speed_of(height):.12g} m/s"]
         with memory.Inputs(self.case, overrides) as inputs:
             inputs.check()
             key = inputs.key()

@@ -107,6 +107,22 @@ class Study:
     simulated: int = 0
     found: int = 0
 
+    def bench(self, tell: Callable[[str], None]) -> Bench:
+        """Returns what simulates drops of the case, kept in the folder of the output."""
+        memory.hold_units()
+        return Bench(str(self.case.path), _overrides(self.case), Path(self.options.output), self.options.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0))),
+                     self.options.retry, tell)
+
+    @property
+    def middle(self) -> float:
+        """The critical height of the case's own material, or the highest drop that can be used (m)."""
+        return self.result.height if self.result.verdict == "found" else max(p.height for p in self.points if not p.failed)
+
+    @property
+    def nearest(self) -> Point:
+        """The drop of the case's own material that can be used and is nearest to its critical height."""
+        return min((p for p in self.points if not p.failed), key=lambda p: abs(math.log(p.height / self.middle)))
+
 
 def _length(option: str, text: str) -> float:
     try:
@@ -177,28 +193,39 @@ def _overrides(case: Case) -> list[str]:
     return [f"{key}={text}" for key, text in case.overrides.items()]
 
 
-def run(options: argparse.Namespace, tell: Callable[[str], None] = say, command: str = "") -> int:
-    """Runs the command and returns its exit code. `command`: what was called, for the files, if it was not the command line."""
-    o, folder = options, Path(options.output)
+def run(options: argparse.Namespace) -> int:
+    """Runs the command and returns its exit code."""
+    find(options, say, say, shlex.join(["softfall", *sys.argv[1:]]))
+    return 0
+
+
+def find(o: argparse.Namespace, tell: Callable[[str], None], progress: Callable[[str], None], command: str) -> Study:
+    """Finds the height, and writes the files of the command. `command`: what was called, for the files."""
+    folder = Path(o.output)
     _check(o)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is not a folder")
     there = [name for name in OUTPUT if (folder / name).exists()]
     if there and not o.force:
         raise InputError(f"{folder} already holds {there[0]}: give another directory, or --force to replace it")
+    for name in (*OUTPUT, *STALE):
+        output_files.check(folder / name, *filter(None, (o.case, o.rig, o.material)))
+    output_files.check_page(folder / "report.html")
     s = _read_case(o)
     draws = cfh_draws.read(Path(o.posterior), s.case, values_of(o.set)) if o.posterior else []
     search = _search(o, s)
     if s.rig.pairs:
         tell(f"rig {o.rig}: g_eff = {s.rig.gravity:.3f} ± {s.rig.error:.3f} m/s2 from {s.rig.pairs} pairs")
-    memory.hold_units()
-    bench = Bench(str(s.case.path), _overrides(s.case), folder, o.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0))), o.retry, tell)
+    bench = s.bench(tell)
     s.points, s.ending = bench.run({"": search})[""]
     s.result = cfh.evaluate(s.points, s.limits)
     if draws:
+        bench.tell = progress
         _spread(s, bench, search, draws)
     s.simulated, s.found = bench.simulated, bench.found
     cfh_page.write(s, folder)
     _write_tables(s, folder)
-    output_files.write(folder / "cfh.json", json.dumps(_summary(s, command or shlex.join(["softfall", *sys.argv[1:]])), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+    output_files.write(folder / "cfh.json", json.dumps(_summary(s, command), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
     for name in STALE:
         (folder / name).unlink(missing_ok=True)
     for c, one in enumerate(s.result.crossings):
@@ -209,7 +236,7 @@ def run(options: argparse.Namespace, tell: Callable[[str], None] = say, command:
     tell(f"{s.simulated} drops simulated, {s.found} were there\nWritten: {folder}/report.html, cfh.json, cfh.csv, cfh.png\n{CAUTION}")
     if s.result.verdict == "not determined":
         raise NumericError(s.result.problem, 5)
-    return 0
+    return s
 
 
 def _spread(s: Study, bench: Bench, search: Search, draws: list[cfh_draws.Draw]) -> None:
@@ -218,15 +245,14 @@ def _spread(s: Study, bench: Bench, search: Search, draws: list[cfh_draws.Draw])
     if not usable:
         s.no_interval = "no drop of the case's own material can be used"
         return
-    first = s.result.height if s.result.verdict == "found" else usable[-1].height
+    first = s.middle
     near = sorted(sorted(usable, key=lambda p: abs(math.log(p.height / first)))[:2], key=lambda p: p.height)
     slope = (near[1].excess(s.limits) - near[0].excess(s.limits)) / math.log(near[1].height / near[0].height) if near[1:] else cfh.FIRST_SLOPE
     one = Search(s.limits, first, search.highest, DRAW_TOLERANCE * search.tolerance, at_once=1, slope=slope)
-    bench.overrides = [text for text in bench.overrides if not text.startswith("material=")]
     bench.tell(f"{len(draws)} draws of {s.options.posterior}, each by drops of its own")
     made = bench.run({draw.path: one for draw in draws}, {draw.path: draw.path for draw in draws})
     s.draw_points = [made[draw.path][0] for draw in draws]
-    at = min(usable, key=lambda p: abs(math.log(p.height / first))).figures
+    at = s.nearest.figures
     s.spread = cfh_draws.spread(draws, [made[draw.path] for draw in draws], s.limits, at.get("a_max_mesh_error", math.nan), (at["a_max_scatter"], at["hic_scatter"]),
                                 (s.rig.gravity, s.rig.error, s.rig.pairs), s.options.quantile)
 

@@ -6,13 +6,13 @@ import math
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from .cfh_draws import MESH_HIC
 from .curves import STANDARD_GRAVITY
 from .protocol import NEEDS, Figure, Protocol, kilograms
 from .protocol_drops import NO_LIMIT, Drop, Drops, Search, Spot, figures_of
 from .scatter import ENOUGH, Scatter, of_crossing, of_mean, of_repeats
 
 LEAST_DRAWS = 20  # for a 95 % interval
-MESH_HIC = 1.3  # expected error of HIC from the mesh over that of a_max, SF_CFH_MESH_HIC of softfall-cfh (docs/cfh.md)
 
 
 @dataclass

@@ -77,6 +77,12 @@ def check_own(path: str | os.PathLike[str], mark: bytes, writer: str) -> None:
         raise InputError(f"{place} was not written by {writer}, and is not replaced: give another name")
 
 
+def check_page(path: Path) -> None:
+    """Refuses to replace a page that is not of softfall; it may be absent or empty."""
+    if path.is_file() and path.stat().st_size and b"softfall" not in read(path, 1 << 30):
+        raise InputError(f"{path} is not of softfall, and is not replaced: give another directory")
+
+
 def write(path: str | os.PathLike[str], content: str | bytes, *inputs: str | os.PathLike[str]) -> None:
     """Writes a file under another name on the same file system, brings it to the disk and renames it: after a failure the earlier file remains.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The next measurement of a protocol: its places by softfall-cfh, its measured drops, and the advice as a result of the page."""
+"""The next measurement of a protocol: its places by drops of the draws, its measured drops, and the advice as a result of the page."""
 from __future__ import annotations
 
 import math
@@ -17,6 +17,7 @@ from .errors import InputError, NumericError
 from .judge import Foams, Line, Outcome, spots_of
 from .protocol import Condition, Figure, Missile, Position, Protocol
 from .protocol_drops import Drop, Drops, Search, Spot, case_at, figures_of, folder_name, search, search_notes
+from .protocol_places import place_of
 
 LISTED = 10
 
@@ -95,14 +96,15 @@ def _expected(pads: advice.Pads, question: advice.Question, drop: advice.Drop) -
                        "" if low <= drop.figures[c] <= high else "outside of what was expected before it")
 
 
-CHECKS, BELOW = 3, 0.95  # draws that are simulated of another missile, as nothing is judged by its drops; of the figures of a drop
+BELOW = 0.95  # of the figures of a drop, for the limits of a missile that reaches none
 
 
 def _place_name(condition: str, position: str, missile: str) -> str:
     return ", ".join([condition, position, *([f"missile {missile}"] if missile else [])])
 
 
-def _places(p: Protocol, pad: Case, output: Path, posterior: str, options: Mapping[str, Any], notes: list[str]) -> tuple[list[advice.Place], list[Search]]:
+def _places(p: Protocol, question: advice.Question, pad: Case, output: Path, posterior: str, options: Mapping[str, Any],
+            notes: list[str]) -> tuple[list[advice.Place], list[Search]]:
     """Returns what is known of drops at each place, with the missile of the protocol and with others, and the searches of the first."""
     places, searches = [], []
     for condition in p.conditions:
@@ -111,7 +113,7 @@ def _places(p: Protocol, pad: Case, output: Path, posterior: str, options: Mappi
             if case is None:
                 continue
             searches.append(search(p, case, condition, position, output / folder_name(condition.name, position.name), posterior, options))
-            places.append(advice.read_place(_place_name(condition.name, position.name, ""), searches[-1].folder, cost=p.drop_cost))
+            places.append(place_of(_place_name(condition.name, position.name, ""), searches[-1].study, question.asked, cost=p.drop_cost))
             for other in p.others:
                 made = _other_place(p, pad, condition, position, other, output, posterior, options, notes)
                 places += [made] if made else []
@@ -119,7 +121,7 @@ def _places(p: Protocol, pad: Case, output: Path, posterior: str, options: Mappi
 
 
 def _search_other(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str, options: Mapping[str, Any]) -> Search | None:
-    """Returns a search of another missile with draws; where no limit is reached, its draws are checked by those of its highest drop that can be used."""
+    """Returns a search of another missile with draws; where no limit is reached, the figures of its highest drop that can be used stand for the limits."""
     first = search(p, case, condition, position, folder, None, options, shown=False)
     usable = [point for point in first.summary["points"] if not point["failed"]]
     if len(usable) < 2:
@@ -127,7 +129,7 @@ def _search_other(p: Protocol, case: Case, condition: Condition, position: Posit
     reached = first.summary["critical_fall_height"]["verdict"] == "found"
     highest = max(usable, key=lambda point: float(point["height_m"]))
     limits = None if reached else (BELOW * highest["a_max_g"], BELOW * highest["hic"])
-    return search(p, case, condition, position, folder, posterior, {**options, "check_drops": CHECKS}, limits, shown=False)
+    return search(p, case, condition, position, folder, posterior, options, limits, shown=False)
 
 
 def _other_place(p: Protocol, pad: Case, condition: Condition, position: Position, other: Missile, output: Path, posterior: str,
@@ -137,34 +139,31 @@ def _other_place(p: Protocol, pad: Case, condition: Condition, position: Positio
     try:
         case = case_at(p, pad, condition, position, [], other.keys)
         found = _search_other(p, case, condition, position, folder, posterior, {**options, "views": None}) if case else None
+        if found:
+            return place_of(name, found.study, (), other.name, other.cost)
     except InputError as error:
         raise InputError(f"{p.path}: advice: missile {other.name}: {error}") from None
     except NumericError as error:
         notes.append(f"drops at {name} are not weighed: {error}")
         return None
-    if found and "draws" in (found.summary["posterior"] or {}):
-        place = advice.read_place(name, found.folder, other.name, other.cost)
-        if place.freedom > 0:
-            return place
-    notes.append(f"drops at {name} are not weighed: too few draws were simulated with success")
+    notes.append(f"drops at {name} are not weighed: fewer than two of them can be used")
     return None
 
 
 def foams_interval(p: Protocol, measured: Drops, searches: Sequence[Search]) -> Foams:
     """Returns the 95 % interval of the measured critical height by the draws of the foam at the places of the searches, weighed by the measured first drops."""
     named = {_place_name(spot.condition, spot.position, "") for spot in spots_of(measured)}
-    made = [_place_name(one.condition, one.position, "") for one in searches if "draws" in (one.summary["posterior"] or {})]
+    made = [_place_name(one.condition, one.position, "") for one in searches if one.study and one.study.spread]
     if p.counted != (1,):
         return Foams(math.nan, math.nan, "the draws of the foam know first drops alone")
     if not named or set(made) != named:
         return Foams(math.nan, math.nan, f"the draws of the foam were not simulated at {', '.join(sorted(named - set(made))) or 'the measured places'}")
     limits, notes = (p.limit_of("a_max_g"), p.limit_of("hic")), list[str]()
-    pads = advice.Pads([advice.read_place(name, one.folder) for name, one in zip(made, searches)], limits=limits)
+    pads = advice.Pads([place_of(name, one.study) for name, one in zip(made, searches)], limits=limits)
     for drop in _measured(p, measured, pads, notes):
         pads.learn(drop)
-    problem = pads.misfits or (advice.UNKNOWN_COLUMNS if any(place.freedom == 0 for place in pads.judged) else "")
-    if problem:
-        return Foams(math.nan, math.nan, problem)
+    if pads.misfits:
+        return Foams(math.nan, math.nan, pads.misfits)
     return Foams(*pads.interval(limits), f"{pads.draws} draws of the foam, weighed by the measured drops"
                  + (f" but {len(notes)} that {'are' if len(notes) > 1 else 'is'} left out" if notes else ""))
 
@@ -191,7 +190,7 @@ def advise(p: Protocol, pad: Case, measured: Drops, output: Path, posterior: str
            options: Mapping[str, Any]) -> tuple[advice.Advice, Outcome, Drops]:
     """Returns the advice of a protocol on a pad after some drops, what the page says of it, and what was simulated, below `output`."""
     question, notes = _question(p, required, bound), list[str]()
-    places, searches = _places(p, pad, output, posterior, options, notes)
+    places, searches = _places(p, question, pad, output, posterior, options, notes)
     if not places:
         raise InputError(f"nothing of the protocol can be simulated: {'; '.join(notes)}")
     pads, lines = advice.Pads(places, limits=question.limits), list[Line]()

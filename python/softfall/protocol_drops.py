@@ -16,6 +16,7 @@ import numpy as np
 from . import cfh_command, memory, programs
 from .array import Array
 from .case import Case
+from .command import say
 from .curves import Hic, hic
 from .drop import Verdict, later_results, read_results
 from .errors import Error, InputError, NumericError, failure
@@ -65,12 +66,13 @@ class Drop:
 
 @dataclass
 class Search:
-    """A critical height of softfall-cfh at one position: its cfh.json, and the drops that it simulated."""
+    """A critical height of `softfall cfh` at one position: its cfh.json, and the drops that it simulated."""
 
     condition: str
     position: str
     folder: Path
     summary: dict[str, Any]
+    study: cfh_command.Study | None = None
     view: Path | None = None  # as that of a drop, at the critical height
     drops: list[Drop] = field(default_factory=list)
 
@@ -298,7 +300,7 @@ def _run_series(p: Protocol, case: Case, spot: Spot, folder: Path, options: Mapp
     return drops
 
 
-SEARCH_FILTER, NO_LIMIT = 1000, 1e6  # of softfall-cfh and of draws; a limit that no drop reaches
+SEARCH_FILTER, NO_LIMIT = 1000, 1e6  # of a search and of draws; a limit that no drop reaches
 OF_THE_DROP = (4, 5)  # exit codes of a model or a solution that fails: others end the command
 
 
@@ -309,13 +311,12 @@ def search(p: Protocol, case: Case, condition: Condition, position: Position, fo
     folder.mkdir(parents=True, exist_ok=True)
     a_max, hic_value = limits or (p.limit_of("a_max_g"), p.limit_of("hic"))
     given = {"limit_g": a_max or NO_LIMIT, "limit_hic": hic_value or NO_LIMIT, "force": True}
-    sets, threads = [f"--set={key}={text}" for key, text in case.overrides.items()], options.get("threads")
-    if posterior:  # columns of every draw at every height, for the advice
-        programs.run("cfh", [str(case.path), f"--output={folder}", *sets, *programs.options({**given, "posterior": posterior, **options, "views": None})])
-    else:
-        words = [f"--output={folder}", *sets, *programs.options({**given, "jobs": options.get("jobs")}), "--", str(case.path)]
-        cfh_command.run(cfh_command.parser("softfall cfh").parse_args(words), lambda text: None, f"critical height of {p.path}")
-    found = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")))
+    words = [f"--output={folder}", *(f"--set={key}={text}" for key, text in case.overrides.items()),
+             *programs.options({**given, "posterior": posterior, "jobs": options.get("jobs")}), "--", str(case.path)]
+    study = cfh_command.find(cfh_command.parser("softfall cfh").parse_args(words), lambda text: None, say if posterior else lambda text: None,
+                             f"critical height of {p.path}")
+    found = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")), study)
+    threads = options.get("threads")
     height = found.summary["critical_fall_height"].get("height_m")
     if shown:
         found.drops = [_point(p, case, Spot(condition.name, position.name, point["height_m"]), point, folder / "runs", threads) for point in found.summary["points"]]

@@ -2,7 +2,6 @@
 """The pictures of a protocol's page, as SVG: curves of the drops, and figures over the height."""
 from __future__ import annotations
 
-import csv
 import io
 import math
 from typing import Any, Mapping
@@ -10,6 +9,7 @@ from typing import Any, Mapping
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from .cfh import FIGURES
 from .protocol import Figure, Protocol
 from .protocol_drops import Drop, Drops, Search, figures_of
 
@@ -88,9 +88,10 @@ def height_picture(p: Protocol, parts: Mapping[str, Drops]) -> str:
         ax.axhline(figure.limit, color="0.4", lw=1, ls=":")
         ax.annotate(f"limit {figure.limit:g}", (0.02, figure.limit), xycoords=("axes fraction", "data"), fontsize=7, va="bottom")
         values = [drop.figures[figure.label] for drops in parts.values() for drop in drops.all if figure.label in drop.figures]
-        ax.set(xlabel="height of free fall (m)", ylabel=figure.label, ylim=(0, 1.15 * max([figure.limit or 0.0, *values])))  # a band may be far higher
+        ax.set(xlabel="height of free fall (m)", ylabel=figure.label, ylim=(0, 1.15 * max([figure.limit or 0.0, *values])))  # draws may be far higher
     axes[0, -1].legend(fontsize=7)
-    told = ["Filled: measured drops, hollow: simulated ones. Full lines join the measured means of the drops that count; dashed lines are the fit of the simulated drops, or join them."]
+    told = ["Filled: measured drops, hollow: simulated ones. Full lines join the measured means of the drops that count; dashed lines lead through the simulated drops."]
+    told += ["Thin lines join the drops of each draw of the foam."] if any(one.study and one.study.draw_points for drops in parts.values() for one in drops.searches) else []
     told += [f"The first {MOST_PLACES} of {len(places)} places."] if len(places) > MOST_PLACES else []
     return "<h2>Figures over the height</h2>" + _svg(chart) + f'<p class="note">{" ".join(told)}</p>'
 
@@ -107,27 +108,20 @@ def _draw_place(ax: Any, p: Protocol, figure: Figure, place: tuple[str, str], pa
                 label=f"{prefix}{what}")
         search = next((one for one in drops.searches if (one.condition, one.position) == place), None)
         if search:
-            _draw_search(ax, figure, search, colour, prefix)
+            _draw_search(ax, figure, search, colour)
             continue
         spots = _by_height(here)
         ax.plot(list(spots), [figures_of(group, figure.label, p.counted if len(group) == p.count else (group[0].number,)) for group in spots.values()],
                 "-" if filled else "--", color=colour, lw=1)
 
 
-def _draw_search(ax: Any, figure: Figure, search: Search, colour: str, prefix: str) -> None:
-    """Draws a curve through the drops of a search, and the band of the draws if there are any."""
-    key = {"a_max_g": "a_max", "hic": "HIC"}[figure.key]
+def _draw_search(ax: Any, figure: Figure, search: Search, colour: str) -> None:
+    """Draws a curve through the drops of a search, and thin lines through those of the draws if there are any."""
     usable = [(point["height_m"], point[figure.key]) for point in search.summary["points"] if point[figure.key]]
     if len(usable) > 1:
         x, y = np.log(np.array(usable).T)
         h = np.linspace(x[0], x[-1], 100)
         ax.plot(np.exp(h), [figure.of(float(value)) for value in np.exp(PchipInterpolator(x, y)(h))], "--", color=colour, lw=1.2)
-    band = search.folder / "cfh_band.csv"
-    if not band.exists() or "draws" not in (search.summary["posterior"] or {}):  # it may be of an earlier run
-        return
-    heights = [point["height_m"] for point in search.summary["points"]]
-    with open(band, newline="", encoding="utf-8") as stream:
-        rows = [row for row in csv.DictReader(stream) if 0.8 * min(heights) <= float(row["height_m"]) <= 1.2 * max(heights)]
-    name = "a_max_{}_g" if key == "a_max" else "hic_{}_1"
-    edges = [[figure.of(float(row[name.format(side)] or "nan")) for row in rows] for side in ("low", "high")]
-    ax.fill_between([float(row["height_m"]) for row in rows], *edges, color=colour, alpha=0.12, lw=0, label=f"{prefix}95 % of the draws, foam alone")
+    for points in search.study.draw_points if search.study else ():
+        drops = [p for p in points if not p.failed]
+        ax.plot([p.height for p in drops], [figure.of(p.value[FIGURES.index(figure.key)]) for p in drops], "-", color=colour, alpha=0.3, lw=0.4)

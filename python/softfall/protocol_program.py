@@ -124,6 +124,8 @@ def perform(o: argparse.Namespace) -> str:
     ignored = [name for name in ("posterior", "draws", "set", "engine", "profile") if getattr(o, name)] if not o.pad else []
     if ignored:
         raise InputError(f"--{ignored[0]} belongs to --pad")
+    if o.engine not in (None, "local") and (o.advise or p.kind == "critical height" and not p.heights):
+        raise InputError(f"--engine={o.engine} is for draws of the foam at given heights; a search runs its drops in memory, --jobs of them side by side: leave it out")
     if o.draws is not None and o.draws < 1:
         raise InputError(f"--draws={o.draws} is not a number from 1 on")
     if o.advise and o.draws:
@@ -169,7 +171,7 @@ def parser(prog: str) -> Parser:
     add("--bound", metavar="SHARE", type=float, help="with --advise: stop at this probability of a wrong decision (default 0.05), or relative interval "
                                                      "(0.1)")
     add("--draws", metavar="N", type=int, help="draws of --posterior (default: all)")
-    add("--engine", metavar="NAME", help="what runs searches and draws of the foam: local (default) or snakemake")
+    add("--engine", metavar="NAME", help="what runs draws of the foam at given heights: local (default) or snakemake")
     add("-f", "--force", action="store_true", help="replace the report of an earlier command in DIR; its finished drops are used again")
     add("-j", "--jobs", metavar="N", type=int, help="drops of searches and of draws side by side")
     add("--laboratory", metavar="FILE", help="laboratory, sample, date, conditioning, photo: a text file of fields")

@@ -7,6 +7,7 @@ where it was; GROUP.done says that all have been answered. The campaign takes th
 from __future__ import annotations
 
 import argparse
+import fcntl
 import json
 import os
 import shutil
@@ -14,7 +15,7 @@ import signal
 import subprocess
 import time
 from pathlib import Path
-from typing import Iterable, Iterator, Sequence
+from typing import Iterator, Sequence
 
 from . import memory, output as output_files, programs
 from .command import Parser, say
@@ -104,19 +105,33 @@ def check_engine(engine: str, profile: str | None, per_job: int | None) -> None:
         raise Error("--profile slurm: Slurm's commands (sbatch) are not installed (package slurm-client of Debian)", 3)
 
 
-def simulate(folder: Path, tasks: Sequence[Task], per_job: int, jobs: int, profile: str | None, lock: int) -> Iterable[Answer]:
+def simulate(folder: Path, tasks: Sequence[Task], per_job: int, jobs: int, profile: str | None, lock: int) -> Iterator[Answer]:
     """Runs the tasks in blocks by Snakemake; returns the answers, also those of blocks that did not end."""
     batch, share = folder / BATCH, programs.folder().parent / "share/softfall"
+    own = output_files.open_lock(folder / f"{BATCH}.lock")
+    try:
+        fcntl.flock(own, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(own)
+        raise Error(f"an engine of another command is at work in {batch}: wait until it has ended, or give another directory", 3) from None
+    try:
+        yield from _simulate(batch, share, tasks, per_job, jobs, profile, (lock, own))
+    finally:
+        os.close(own)
+
+
+def _simulate(batch: Path, share: Path, tasks: Sequence[Task], per_job: int, jobs: int, profile: str | None, locks: Sequence[int]) -> Iterator[Answer]:
+    """Runs the tasks as `simulate` does, in a folder that is this command's; a Snakemake that outlives it keeps the locks."""
     shutil.rmtree(batch, ignore_errors=True)
     batch.mkdir()
     groups = [f"{k // per_job}-{tasks[k // per_job * per_job].key[:16]}" for k in range(len(tasks))]
-    lines = [HEAD, f"folder\t{os.getcwd()}", f"rows\t{folder.absolute()}", f"count\t{len(tasks)}", *(f"{task.key}\t{group}\t{json.dumps(task)}" for task, group in zip(tasks, groups))]
+    lines = [HEAD, f"folder\t{os.getcwd()}", f"rows\t{batch.parent.absolute()}", f"count\t{len(tasks)}", *(f"{task.key}\t{group}\t{json.dumps(task)}" for task, group in zip(tasks, groups))]
     output_files.write(batch / MANIFEST, "\n".join(lines) + "\n")
     place = ["--profile", str(share / "slurm") if profile == "slurm" else profile] if profile else ["--cores", str(jobs)]
     with open(batch / "log.txt", "wb") as log:
         process = subprocess.Popen(["snakemake", "--snakefile", str(share / "Snakefile"), "--directory", str(batch.absolute()), "--nolock", "--keep-going", "--rerun-incomplete",
                                     "--config", f"manifest={(batch / MANIFEST).absolute()}", f"program={programs.folder() / 'softfall-rows'}", "threads=1", *place],
-                                   stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True, pass_fds=[lock],
+                                   stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True, pass_fds=locks,
                                    preexec_fn=_take_interrupts,
                                    env={**os.environ, "SOFTFALL_SHARE": str(share)})
         try:
@@ -126,7 +141,7 @@ def simulate(folder: Path, tasks: Sequence[Task], per_job: int, jobs: int, profi
             process.send_signal(signal.SIGINT)  # it cancels its jobs
             process.wait()
             raise
-    return answers(folder)
+    yield from answers(batch.parent)
 
 
 def _take_interrupts() -> None:

@@ -188,7 +188,7 @@ static const sf_key keys[] = {
      "from one drop to the next, in which the pad recovers (`material.memory`); required for drops without an `interval` of their own",
      .quantity = SF_TIME, .low = 0.1, .high = 1e7},
     {"series", "counted", SF_KEY_COUNTED, "", AT(counted),
-     "drops by whose mean `softfall sweep` and softfall-cfh judge a series, for example [2, 3]; the last drop is one of them; absent: all but the first",
+     "drops by whose mean `softfall sweep` and `softfall cfh` judge a series, for example [2, 3]; the last drop is one of them; absent: all but the first",
      .idle = true},
     /* output */
     {"output", "acceleration", SF_KEY_CHOICE, "\"accelerometer\"", AT(kinematic),

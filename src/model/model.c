@@ -233,10 +233,6 @@ double sf_missile_card_depth(const sf_missile_card *card, double displacement) {
     return -card->direction[2] * displacement - card->clearance;
 }
 
-bool sf_missile_card_is_vertical(const sf_missile_card *card) {
-    return card->direction[2] <= -1 + 1e-9;
-}
-
 double sf_model_informed_strain(const sf_model *model) {
     double least = INFINITY;
     for (int64_t k = 0; k < model->material_count; k++)

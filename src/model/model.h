@@ -311,8 +311,6 @@ bool sf_missile_inertia_is_possible(const double inertia[6], double principal[3]
  * undeformed pad's top, from which the thickness is measured, after the missile's displacement (m) along its
  * direction; negative above the plane. */
 double sf_missile_card_depth(const sf_missile_card *card, double displacement);
-/* True if the missile moves straight down. */
-bool sf_missile_card_is_vertical(const sf_missile_card *card);
 
 /* The material of a node; borrowed. */
 static inline const sf_material *sf_model_material(const sf_model *model, int64_t node) {

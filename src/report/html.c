@@ -224,13 +224,6 @@ void sf_html_cell(sf_html_table *table, const char *format, ...) {
     PUT_ARGUMENTS(table->page, "", format, "</td>");
 }
 
-void sf_html_number(sf_html_table *table, int digits, double value) {
-    if (isfinite(value))
-        sf_html_cell(table, "%.*f", digits, value);
-    else
-        sf_html_cell(table, "–");
-}
-
 void sf_html_line(sf_html_table *table, const char *first, const char *format, ...) {
     char text[1024], *rest = text, *cell;
     SF_PRINT_INTO(text, format);

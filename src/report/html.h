@@ -68,8 +68,6 @@ void sf_html_cell(sf_html_table *table, const char *format, ...) __attribute__((
 #define SF_HTML_ROW(table, ...) (sf_html_row(table), sf_html_cell(table, __VA_ARGS__))
 /* The next cell has this as its hint. */
 void sf_html_hint(sf_html_table *table, const char *text);
-/* The value with so many digits after the point, or a dash if it is not finite. */
-void sf_html_number(sf_html_table *table, int digits, double value);
 /* A row: a cell of text, and cells of numbers and words of ours between '|' in the format; NULL: these alone,
  * in the row that is open. A cell that begins with a number that is not finite is a dash. */
 void sf_html_line(sf_html_table *table, const char *first, const char *format, ...)

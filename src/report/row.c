@@ -272,23 +272,6 @@ void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records
     }
 }
 
-void sf_rows_csv(sf_csv *csv, sf_rows rows, sf_records records) {
-    for (size_t c = 0; c < rows.count; c++)
-        sf_csv_text(csv, rows.row[c].key);
-    sf_csv_end(csv);
-    for (int64_t k = 0; k < records.count; k++) {
-        for (size_t c = 0; c < rows.count; c++) {
-            const sf_row *row = &rows.row[c];
-            sf_value value = sf_row_value(row, record_at(records, k));
-            if (value.kind == SF_VALUE_TEXT)
-                sf_csv_text(csv, value.text);
-            else
-                SF_CSV_NUMBERS(csv, sf_row_number(row, record_at(records, k)));
-        }
-        sf_csv_end(csv);
-    }
-}
-
 /* ---- HTML ---- */
 
 static void put_html_cell(sf_html_table *table, const sf_row *row, const void *record) {

@@ -149,9 +149,6 @@ void sf_row_json(sf_json *json, const sf_row *row, const void *record);
 void sf_rows_json(sf_json *json, sf_rows rows, const void *record);
 void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records records);
 
-/* CSV: a line of the keys and a line for each record. */
-void sf_rows_csv(sf_csv *csv, sf_rows rows, sf_records records);
-
 /* HTML: a table with a column for each declaration that has a name, and a row for each record. */
 void sf_rows_html_table(FILE *page, sf_rows rows, sf_records records);
 

@@ -6,8 +6,6 @@
 #include "post/figures/injury.h"
 #include "post/results/results.h"
 
-#include <gsl/gsl_matrix.h>
-
 /* The drop as uncoupled columns (theory, section "Columns"): every piece of the missile's surface compresses
  * the foam below it as if the neighbouring foam and the pad's mass were not there,
  *
@@ -68,44 +66,3 @@ sf_status sf_columns_respond(const sf_columns *columns, const sf_material_law *l
 /* The scaled figures alone (sf_columns_scale). Errors as of sf_columns_drop. */
 sf_status sf_columns_expect(const sf_columns *columns, const sf_material_law *law,
                             double y[SF_COLUMNS_LOGARITHMS], sf_error *err);
-
-/* A Gaussian process that predicts one output of a study where it was not computed: ordinary kriging
- * (Rasmussen and Williams 2006, chapters 2 and 5). The correlation of two points is Matern's of smoothness
- * 5/2,
- *
- *     c(r) = (1 + s + s^2 / 3) exp(-s),   s = sqrt(5) r,   r^2 = sum_i (d_i / l_i)^2,
- *
- * where d_i is the difference of two numbers, or 0 for equal and 1 for different words. A nugget holds the
- * scatter of meshes. Lengths and nugget maximise the restricted likelihood under a weak prior. The same bits
- * for any number of threads. */
-
-enum { SF_PREDICTOR_INPUTS = 28 };
-#define SF_PREDICTOR_SIDES 1.959963984540054 /* standard deviations on each side of a 95 % interval */
-
-typedef struct sf_predictor {
-    int inputs, count;
-    bool word[SF_PREDICTOR_INPUTS];
-    double length[SF_PREDICTOR_INPUTS]; /* in units of the inputs; of a word, in differences */
-    double nugget;                      /* -, variance of the scatter over that of the process */
-    double mean, deviation;             /* of the process, in units of the output */
-    double calibration; /* -, factor of all standard deviations, from the residuals of points left out: the
-                           larger of their root mean square and of their 95 % quantile, over what the process
-                           expects */
-    double *x;          /* [count][inputs], and behind them the next three; owned */
-    gsl_matrix_view factor; /* [count][count] lower Cholesky factor of the correlation K */
-    gsl_vector_view weight; /* [count] K^-1 (y - mean) */
-    gsl_vector_view ones;   /* [count] K^-1 1 */
-    double ones_sum;        /* 1' K^-1 1 */
-} sf_predictor;
-
-/* Fits to y [count] at x [count][inputs]; numbers are scaled to about 0 to 1 by the caller. At least two
- * points. Release with sf_predictor_free, also on failure. Errors: SF_ERR_NUMERIC, the correlation cannot be
- * factored; memory. */
-sf_status sf_predictor_fit(int inputs, const bool *word, int count, const double *x, const double *y,
-                           sf_predictor *predictor, sf_error *err);
-void sf_predictor_free(sf_predictor *predictor);
-
-/* Predicts at x [inputs]. `room` [count] is overwritten. `deviation` is that of a value that would be
- * computed, with its scatter. */
-void sf_predictor_at(const sf_predictor *predictor, const double *x, double *room, double *mean,
-                     double *deviation);

@@ -161,17 +161,3 @@ sf_status sf_material_write_checked(const char *folder, const char *name, const 
     return SF_FAIL(err, SF_ERR_MODEL, "no material is written, because softfall-pre would refuse it: %s",
                    inner.text + (inside ? skip + 1 : 0));
 }
-
-void sf_draw_path(const char *folder, int number, char *path, size_t size) {
-    snprintf(path, size, "%s/draw-%03d.cfg", folder, number);
-}
-
-int sf_draws_count(const char *folder, int most) {
-    char path[PATH_SIZE];
-    for (int number = 1; number <= most; number++) {
-        sf_draw_path(folder, number, path, sizeof path);
-        if (access(path, F_OK) != 0)
-            return number - 1;
-    }
-    return most;
-}

@@ -27,8 +27,3 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
 /* The same, but SF_ERR_MODEL with the reason, and no <name>.cfg, if softfall-pre would refuse it. */
 sf_status sf_material_write_checked(const char *folder, const char *name, const sf_material *material,
                                     const sf_material_text *text, sf_error *err);
-
-/* The path of draw `number` (from 1) of a posterior in a folder, a material file. */
-void sf_draw_path(const char *folder, int number, char *path, size_t size);
-/* Returns how many draws there are from 1 on without a gap, at most `most`. */
-int sf_draws_count(const char *folder, int most);

@@ -6,18 +6,7 @@ static void judge(const sf_results *r, const sf_figures *f, sf_runner_result *ou
     const sf_limits limits = SF_DEFAULT_LIMITS; /* no part of the grade */
     sf_verdict_compute(r, f, &limits, &verdict);
     out->grade = verdict.grade;
-    out->sure = verdict.sure;
     sf_verdict_line(&verdict, out->verdict, sizeof out->verdict);
-}
-
-static sf_status take_layers(const sf_results *r, const sf_figures *f, sf_runner_result *out, sf_error *err) {
-    if (r->layer_count == 0 || !f->layers)
-        return SF_OK;
-    out->layer_strain = sf_alloc(err, r->layer_count, sizeof *out->layer_strain, "layers");
-    out->layer_count = out->layer_strain ? r->layer_count : 0;
-    for (int k = 0; k < out->layer_count; k++)
-        out->layer_strain[k] = f->layers[k].max_local_strain;
-    return err->status;
 }
 
 static sf_status take_figures(const sf_results *r, const sf_figures *f, sf_runner_result *out,
@@ -79,7 +68,7 @@ static sf_status read_result(const sf_run_folder *at, sf_runner_result *out, sf_
     judge(&r, &f, out);
     write_record(at, &r, &f, out);
     f.filtered = (sf_series){0};
-    if (take_layers(&r, &f, out, err) == SF_OK && take_figures(&r, &f, out, err) == SF_OK)
+    if (take_figures(&r, &f, out, err) == SF_OK)
         take_numbers(out);
     return finish_result(path, out, err);
 }
@@ -102,14 +91,7 @@ static void add_drop(int drop, sf_runner_result *one, sf_runner_result *all) {
         snprintf(all->verdict, sizeof all->verdict, "drop %d: %.*s", drop, SF_VERDICT_LINE_SIZE - 20,
                  one->verdict);
     }
-    all->sure = drop == 1 ? one->sure : fmin(all->sure, one->sure);
     all->max_local_strain = fmax(all->max_local_strain, one->max_local_strain);
-    for (int k = 0; k < all->layer_count && k < one->layer_count; k++)
-        one->layer_strain[k] = fmax(one->layer_strain[k], all->layer_strain[k]);
-    free(all->layer_strain);
-    all->layer_strain = one->layer_strain;
-    all->layer_count = one->layer_count;
-    one->layer_strain = NULL;
     sf_series_free(&all->curve);
     all->curve = one->curve;
     one->curve = (sf_series){0};
@@ -138,5 +120,5 @@ sf_status sf_runner_read(const sf_run_folder *at, sf_runner_result *out, sf_erro
 
 void sf_runner_result_free(sf_runner_result *result) {
     sf_series_free(&result->curve);
-    SF_CLEAR(result, result->path, result->figure, result->layer_strain);
+    SF_CLEAR(result, result->path, result->figure);
 }

@@ -23,7 +23,7 @@ enum { SF_RUNNER_COUNTED = 104 };
 
 /* The results of a drop for a campaign; figures of the CFC 1000 curve. Those of a series of drops on one pad
  * are the means over the drops that count (sf_case.counted), `steps` and `wall_s` the sums over all; the
- * largest local strains and the grade are those of the worst drop, curve, window, contact time and `status`
+ * largest local strain and the grade are those of the worst drop, curve, window, contact time and `status`
  * those of the last. Of a series up to the drop sf_runner_drop.number that drop alone counts. */
 typedef struct sf_runner_result {
     double a_max_g, hic;                /* g, - */
@@ -32,11 +32,8 @@ typedef struct sf_runner_result {
     double v0, v_rebound;               /* m s-1; v_rebound NaN if contact had not ended */
     double max_indentation;             /* m */
     double max_local_strain;            /* - */
-    int layer_count;                    /* 0: one material */
-    double *layer_strain;               /* [layer_count] -, largest, NaN: not known; owned */
     double energy_error;                /* - */
     sf_grade grade;                     /* of the run, as softfall-post gives it */
-    double sure;                        /* sf_verdict.sure */
     char verdict[SF_VERDICT_LINE_SIZE]; /* sf_verdict_line of it */
     double *figure;                     /* [of sf_figure_at] sf_figure_number; owned */
     char status[80];                    /* how the run ended: the figure that is a text */

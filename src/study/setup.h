@@ -45,6 +45,6 @@ sf_status sf_study_begin(sf_study *study, const char *const *names, sf_error *er
  * are side by side. */
 void sf_study_run_apart(sf_study *study);
 
-/* Prints what was simulated and which files were written ("report.html, cfh.json"); `warning`: "" or a
+/* Prints what was simulated and which files were written ("report.html, fit.json"); `warning`: "" or a
  * sentence for the sink. */
 void sf_study_close(const sf_study *study, const char *files, const char *warning);

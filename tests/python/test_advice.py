@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import softfall
-from softfall import advice, protocol, protocol_advice
+from softfall import advice, cfh, protocol, protocol_advice, protocol_places
 from test_protocol import MAT, softfall_protocol
 
 SOURCE = pathlib.Path(os.environ["SF_SOURCE_DIR"])
@@ -25,7 +25,7 @@ def place(count=500, name="centre", scatter=SCATTER, mesh=0.0, **more):
     log_height = np.linspace(math.log(0.2), math.log(5), 80)
     value = math.log(1000) + SLOPE * log_height[None, None, :] + SPREAD * z[None, :, None] + np.zeros((2, 1, 1))
     zero = np.zeros((2, count))
-    return advice.Place(name, log_height, value, zero, zero, np.full((2, 80), scatter), np.full(2, mesh), np.zeros(2), zero, 3, **more)
+    return advice.Place(name, log_height, value, np.full(count, np.inf), zero, zero, np.full((2, 80), scatter), np.full(2, mesh), np.zeros(2), **more)
 
 
 def inverse_erf(y):
@@ -274,38 +274,75 @@ def test_a_foam_that_is_none_of_the_draws_is_told():
 def test_a_drop_that_no_draw_can_have_is_told():
     """Also where all draws fit equally badly, so that the weights stay."""
     p = place(count=100)
-    p.value[:, :, 40:] = np.inf
+    p.value[:, :, 40:] += 3
     pads = pads_of([p])
     pads.learn(advice.Drop("centre", math.exp(p.log_height[60]), (math.nan, 1000.0)))
     assert "fits none" in advice.advise(pads, QUESTION).problem
 
 
 def test_pads_that_fail_at_every_height_have_no_interval():
-    p = place(count=100)
-    told = advice.advise(pads_of([p]), advice.Question((None, 1.0), bound=0.1))
+    told = advice.advise(pads_of([place(count=100)]), advice.Question((None, 1.0), bound=0.1))
     assert told.height == (0, 0, 0) and told.loss == 1 and not told.stop
-    unknown = advice.advise(pads_of([dataclasses.replace(p, freedom=0)]), QUESTION)
-    assert "no draw was simulated" in unknown.problem and unknown.decision is None
 
 
-def test_the_columns_own_error_widens_the_figures_of_a_draw():
-    """By Student's t of the degrees of freedom, the same for both figures of a pad."""
-    p = place(count=500)
-    pads = pads_of([dataclasses.replace(p, columns_sd=p.shared + np.array([[0.1], [0.2]]), freedom=50)])
-    error = pads.predict("centre", 1.0) - pads_of([p]).predict("centre", 1.0)
-    assert error[1] == pytest.approx(2 * error[0])
-    assert error[0].std() == pytest.approx(0.1 * math.sqrt(50 / 48), rel=0.03)
+def test_the_error_between_drops_widens_the_figures_of_a_pad():
+    wide = dataclasses.replace(place(), between=np.array([0.1, 0.2]))
+    error = pads_of([wide]).predict("centre", 1.0) - pads_of([place()]).predict("centre", 1.0)
+    assert error.std(axis=1) == pytest.approx([0.1, 0.2], rel=0.03)
 
 
-def test_collapsed_columns_are_beyond_every_limit():
+def test_above_its_last_usable_drop_a_draw_is_beyond_every_limit():
+    """Such a pad counts as failing there, and stays in whatever is measured: figures that nobody knows refute none."""
     p = place(count=100)
-    p.value[:, 50:, 40:] = np.inf
+    p.bound[50:] = 0.9
     pads = pads_of([p])
-    edge = math.exp(p.log_height[39])
-    assert (pads.crossing("centre", (None, 1e9))[50 * advice.REPEATS:] <= math.exp(p.log_height[40]) + 1e-9).all()
-    assert np.isinf(pads.crossing("centre", (None, 1e9))[: 50 * advice.REPEATS]).all()
-    pads.learn(advice.Drop("centre", 2 * edge, (math.nan, math.nan)))  # the drop had no figures
-    assert pads.weight[: 50 * advice.REPEATS].sum() < 1e-12
+    below, above = slice(0, 50 * advice.REPEATS), slice(50 * advice.REPEATS, None)
+    assert (pads.crossing("centre", (None, 1e9))[above] == 0.9).all() and np.isinf(pads.crossing("centre", (None, 1e9))[below]).all()
+    assert not pads.passes("centre", 0.95, (None, 1e9))[above].any() and pads.passes("centre", 0.85, (None, 1e9)).all()
+    asked = advice.Question((None, 1e9), heights=(0.95,))
+    assert advice.advise(pads, asked).probability == pytest.approx(0.5)
+    before = advice.advise(pads, QUESTION).probability
+    assert before <= advice.advise(pads_of([place(count=100)]), QUESTION).probability
+    free = pads_of([place(count=100)])
+    for one in (pads, free):
+        one.learn(advice.Drop("centre", 1.0, (math.nan, 1000.0)))
+    assert pads.weight == pytest.approx(free.weight)
+
+
+# ---- places by drops of the draws ----
+
+LIMITS = (200.0, 1e9)
+
+
+def power(a, p, *heights):
+    return [cfh.Point(h, (a * h**p, 1.0 + h)) for h in heights]
+
+
+def test_drops_of_a_draw_are_added_where_they_lie_far_apart():
+    """From the lowest height that is looked at to a bit above the critical one; not above a drop that cannot be used."""
+    points = power(200, 1.5, 0.99, 1.01)
+    result = cfh.evaluate(points, LIMITS)
+    wanted = protocol_places._lacking(points, result, LIMITS, 0.3)
+    nodes = sorted([*wanted, 0.99, 1.01])
+    assert nodes[0] == 0.3 and nodes[-1] == pytest.approx(1.15, rel=0.01) and max(np.diff(np.log(nodes))) <= protocol_places.GAP + 1e-3 and len(wanted) == 4
+    failed = cfh.Point(1.05, (math.nan, math.nan))
+    assert max(protocol_places._lacking([*points, failed], result, LIMITS, 0.3)) < 1
+    assert protocol_places._lacking([failed], cfh.evaluate([failed], LIMITS), LIMITS, 0.3) == []
+
+
+def test_figures_between_and_beyond_drops_are_those_of_a_power():
+    points = power(200, 1.5, 0.3, 0.5, 0.7, 1.0, 1.01)
+    at = np.log([0.2, 0.4, 0.9, 1.3])
+    assert protocol_places._values(points, at)[0] == pytest.approx(math.log(200) + 1.5 * at, abs=1e-9)
+    assert np.isnan(protocol_places._values(points[:1], at)).all()
+
+
+def test_a_draw_is_known_up_to_its_last_usable_drop():
+    points, failed = power(200, 1.5, 0.9, 0.99, 1.01), cfh.Point(1.05, (math.nan, math.nan))
+    found = cfh.evaluate(points, LIMITS)
+    assert protocol_places._bound(points, points, found, found.height) == math.inf
+    assert protocol_places._bound([*points, failed], points, found, found.height) == 1.01
+    assert protocol_places._bound([*points[:2], failed], points[:2], cfh.evaluate([*points[:2], failed], LIMITS), 0.99) == 0.99
 
 
 # ---- the program ----
@@ -328,9 +365,13 @@ def write_record(path, height, a_max):
     np.savetxt(path, np.column_stack([t, pulse]), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.9g")
 
 
-def test_a_protocol_is_advised_and_learns(asked, case, tmp_path):
+SECTION = SOURCE / "examples/eva50-axisymmetric/case.cfg"
+COARSE = {"geometry.parameters.fine_spacing": "25.0", "geometry.parameters.outer_spacing": "40.0", "pad.mesh_error_limit": "9.0"}
+
+
+def test_a_protocol_is_advised_and_learns(asked, tmp_path):
     """After a drop as the pad is expected to make it, the interval is shorter; the draws' foam is that of the case."""
-    common = ["--pad", case.path, "--posterior", POSTERIOR, "--advise", "-j", "2"]
+    common = ["--pad", SECTION, *(f"--set={key}={value}" for key, value in COARSE.items()), "--posterior", POSTERIOR, "--advise", "-j", "2"]
     first = softfall_protocol(asked, *common, "-o", tmp_path / "out")
     assert first.returncode == 0, first.stderr
     told = json.loads((tmp_path / "out/protocol.json").read_text())["advice"]
@@ -340,14 +381,14 @@ def test_a_protocol_is_advised_and_learns(asked, case, tmp_path):
     assert "missile light" in page and "a compression test at 10 1/s" in page and "Figures over the height" in page
     low, median, high = told["height_m"]
     assert low < median < high
-    light, = (tmp_path / "out/drops").glob("*-light/heights")
-    heights, = set((tmp_path / "out/drops").glob("*/heights")) - {light}
-    curves = advice.read_place("x", heights)
-    pads, points = pads_of([curves]), json.loads((heights / "cfh.json").read_text())["points"]
-    for point in points:  # the case's own drops, whose foam is in the middle of the draws, lie in the middle of the pads
+    p = protocol.read(str(asked))
+    (curves, other), (found,) = protocol_advice._places(p, protocol_advice._question(p, math.nan, None), softfall.Case(SECTION, COARSE), tmp_path / "out/drops", str(POSTERIOR), {"jobs": 1}, [])
+    assert found.study.simulated == 0
+    pads = pads_of([curves])
+    for point in found.summary["points"]:  # the case's own drops, whose foam is in the middle of the draws, lie in the middle of the pads
         if not point["failed"] and point["height_m"] < median:
             for c, key in enumerate(("a_max_g", "hic")):
-                share = float(np.mean(pads.predict("x", point["height_m"])[c] < math.log(point[key])))
+                share = float(np.mean(pads.predict(curves.name, point["height_m"])[c] < math.log(point[key])))
                 assert 0.1 < share < 0.9, (point["height_m"], key, share)
     k = int(np.argmin(abs(curves.log_height - math.log(median))))
     height, a_max = math.exp(curves.log_height[k]), math.exp(np.median(curves.value[0][:, k]))
@@ -377,7 +418,6 @@ def test_a_protocol_is_advised_and_learns(asked, case, tmp_path):
     assert doubtful.returncode == 0 and "drops look exchanged" in after["results"]["advice"]["stated"], doubtful.stdout + doubtful.stderr
     assert after["advice"]["decision"] is None and after["advice"]["stop"] is False and after["results"]["advice"]["passed"] is None
     # a drop of the other missile is learnt from at its own place, and one of a third is refused
-    other = advice.read_place("y", light, "light")
     k = int(np.argmin(abs(other.log_height - math.log(0.8 * other.highest))))
     height, a_max = math.exp(other.log_height[k]), math.exp(np.median(other.value[0][:, k]))
     write_record(tmp_path / "lab/1.csv", height, a_max)

@@ -7,6 +7,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -229,8 +230,8 @@ def test_few_repeats_take_the_interval_of_the_draws_unless_it_does_not_hold_the_
     """Draws of one spread, weighed by a measured drop: the interval of Bayes' rule, by its closed form."""
     from test_advice import SCATTER, SLOPE, SPREAD, place
     p = one_place(tmp_path)
-    search = protocol_drops.Search("as it is", "centre", tmp_path, {"posterior": {"draws": 500}})
-    monkeypatch.setattr(advice, "read_place", lambda name, folder: dataclasses.replace(place(name=name), value=place().value - np.log(10)))  # 100 g at 1 m
+    search = protocol_drops.Search("as it is", "centre", tmp_path, {}, SimpleNamespace(spread=True))
+    monkeypatch.setattr(protocol_advice, "place_of", lambda name, study: dataclasses.replace(place(name=name), value=place().value - np.log(10)))  # 100 g at 1 m
     monkeypatch.setattr(advice, "FORM", (0, 0))
     monkeypatch.setattr(advice.Pads.__init__, "__defaults__", (1, (0, 0), None))
     monkeypatch.setattr(advice, "LOCKS", 0)
@@ -572,7 +573,7 @@ def test_a_critical_height_has_the_view_of_the_drop_from_there(case, tmp_path):
 
 
 def test_a_search_shows_its_drops_beside_measured_ones(case, tmp_path):
-    """Each drop of softfall-cfh is a row with its figures and its curve; heights that were measured are simulated and compared."""
+    """Each drop of the search is a row with its figures and its curve; heights that were measured are simulated and compared."""
     text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
     text = re.sub(r"heights = .*", "", text.replace('kind = "pass"  ', 'kind = "critical height"  ')).replace("count = 2", "count = 1").replace("counted = [2]", "counted = [1]")
     (tmp_path / "mine.toml").write_text(text)
@@ -631,11 +632,6 @@ def test_messages_name_the_protocol_and_not_the_plan_that_is_written(case, tmp_p
         (tmp_path / "mine.toml").write_text(text.replace(old, new))
         result = softfall_protocol(tmp_path / "mine.toml", "--pad", case.path, "-o", tmp_path / "out", *COARSE)
         assert result.returncode == 2 and re.search(said, result.stderr) and "sweep.cfg" not in result.stderr, result.stderr
-
-
-def test_the_error_of_the_mesh_is_that_of_softfall_cfh():
-    header = (SOURCE / "src/study/cfh/spread.h").read_text()
-    assert judge.MESH_HIC == float(re.search(r"#define SF_CFH_MESH_HIC (\S+)", header).group(1))
 
 
 SERIES = ["--set", "geometry.parameters.fine_spacing=20", "--set", "geometry.parameters.outer_spacing=20", "--set",

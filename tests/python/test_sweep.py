@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import contextlib
 import csv
+import fcntl
 import json
 import os
 import random
@@ -22,7 +23,7 @@ import numpy as np
 import pytest
 
 import softfall
-from softfall import campaign, effects, memory, plan as plans, samples, sweep_page
+from softfall import campaign, effects, memory, plan as plans, rows_command, samples, sweep_page
 from softfall.store import Store
 
 BIN, EXAMPLES = Path(os.environ["SF_BIN_DIR"]), Path(__file__).resolve().parents[2] / "examples"
@@ -383,3 +384,15 @@ def test_the_answer_names_the_thinnest_pad(tmp_path: Path) -> None:
     assert sweep_page.answer(campaign.Table(plan, rows)).endswith("up to 4 m/s: 40 mm")
     zipped = plans.Plan(write_plan(tmp_path, '{ zip = ( { key = "geometry.parameters.thickness"; values = [40.0, 60.0]; }, { key = "missile.velocity"; values = ["4 m/s", "6 m/s"]; } ); }'))
     assert sweep_page.answer(campaign.Table(zipped, [row(900), row(900)])).startswith("2 of 2 runs stay below")
+
+
+def test_an_engine_leaves_the_batch_of_another_command_alone(tmp_path: Path) -> None:
+    """While a Snakemake is at work in the folder its manifest and answers stay: a second one is refused."""
+    batch = tmp_path / rows_command.BATCH
+    batch.mkdir()
+    (batch / "manifest.tsv").write_text("of another command")
+    with open(tmp_path / f"{rows_command.BATCH}.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        with pytest.raises(softfall.Error, match="an engine of another command is at work"):
+            list(rows_command.simulate(tmp_path, [], 1, 1, None, lock.fileno()))
+    assert (batch / "manifest.tsv").read_text() == "of another command"

@@ -101,9 +101,8 @@ static bool is_included(const char *begin, const char *end) {
            strncmp(end - behind, SF_INCLUDED_END, behind) == 0;
 }
 
-/* Comments from `line` on, NULL: none; `prefix` stands before each. Blank lines and others are passed over,
- * or end it. */
-static char *collect(const char *line, const char *prefix, bool to_brace) {
+/* Comments from `line` on to a closing brace, NULL: none; `prefix` stands before each line. */
+static char *collect(const char *line, const char *prefix) {
     size_t length, before = strlen(prefix);
     SF_TEXT_STREAM(out, text, size);
     if (!out)
@@ -113,18 +112,12 @@ static char *collect(const char *line, const char *prefix, bool to_brace) {
         if (strncmp(line, prefix, before) != 0)
             break;
         const char *p = line + before + strspn(line + before, " \t");
-        if (to_brace && *p == '}')
+        if (*p == '}')
             break;
         if (*p == '#' && !is_included(line + before, line + length))
             put_comment(out, p + 1, line + length);
-        else if (*p != '#' && !to_brace)
-            break;
     }
     return sf_text_close(out, &text);
-}
-
-char *sf_origin_title(const char *case_text) {
-    return collect(case_text, "", false);
 }
 
 /* The line after the last one that begins so; NULL if none does. */
@@ -152,8 +145,8 @@ char *sf_origin_material(const char *case_text, const char *layer) {
                layer ? layer : "");
     const char *replaced = after_last(case_text, replacing);
     if (replaced)
-        return collect(replaced, "#     ", true);
+        return collect(replaced, "#     ");
     return collect(layer ? after_name(after_last(case_text, "materials"), layer)
                          : after_last(case_text, "material"),
-                   "", true);
+                   "");
 }

@@ -28,8 +28,7 @@ extern const char *const sf_origin_report_keys[SF_ORIGIN_REPORT_KEYS];
 /* The line of report.NAME; false if the case does not give it. */
 bool sf_origin_find_report(const char *parameters, const char *name, sf_origin_key *key);
 
-/* The comments at the begin of the case, and those in its group material (of the file that --set put in its
- * place), without '#', a line each; from malloc, owned by the caller; "" if there are none, NULL only without
- * memory. `layer`: the comments of its group in `materials`; NULL: of the one material. */
-char *sf_origin_title(const char *case_text);
+/* The comments in the case's group material (of the file that --set put in its place), without '#', a line
+ * each; from malloc, owned by the caller; "" if there are none, NULL only without memory. `layer`: the
+ * comments of its group in `materials`; NULL: of the one material. */
 char *sf_origin_material(const char *case_text, const char *layer);
