@@ -5,8 +5,8 @@
     tools/verification_page.py SECTION.md... >docs/verification.md
 
 A study writes each check as a row "quantity | measured | required | pass". Checks "case: quantity" that several cases share
-become the range of each quantity, in a sentence or a list. A table named in KEPT leaves some of its rows, or all, to
-its section, with a link. Every bound stays."""
+become the range of each quantity. Of more than four checks the three nearest to their bounds stand on the page, and a link
+leads to the section with all of them. A table named in KEPT leaves some of its rows, or all, to its section, too."""
 import pathlib
 import re
 import sys
@@ -15,7 +15,7 @@ HEAD = "| quantity | measured | required | |"
 KEPT = {  # first column of a table: the rows of which one of the first two cells matches; None if the checks below it say enough
     "mesh": None, "body force": None, "foam law": None, "cloud": None, "cells along L": None, "Δt / limit": None, "k h / π": None,
     "spacing h, mm": None, "depth, mm": None, "friction coefficient": None, "mean strain": None, "Z₂/Z₁": None,
-    "depth": r"(10|20|30|38|40|42) mm", "case": r"5\.000|→ 0",
+    "depth": r"(20|30|38|42) mm", "case": r"5\.000|→ 0",
     "change": r"stabilisation 0\.5|smooth .*|friction .*|DAMP 0|no (rate|hyst|grav).*|tension .*|(speed|mass) .*"}
 
 
@@ -53,24 +53,37 @@ def take_matrices(rows):
     return groups, plain
 
 
-def write_list(what, items):
-    """A sentence, or a list of more than three items."""
-    if len(items) <= 3:
-        return [f"Required{what}: " + "; ".join(items) + ".", ""]
-    return [f"Required{what}:", "", *(f"- {item}" for item in items), ""]
+def nearness(measured, required):
+    """How near a value is to its bound: 0 far within, 1 at the bound, 2 if the bound cannot be read."""
+    value, bounds = float(measured), [float(number) for number in re.findall(r"-?[\d.]+(?:e[-+]?\d+)?", required)]
+    if len(bounds) == 2 and bounds[0] == 0:
+        return abs(value) / bounds[1]
+    if len(bounds) == 2 and bounds[0] < bounds[1]:
+        return abs(2 * value - bounds[0] - bounds[1]) / (bounds[1] - bounds[0])
+    if len(bounds) == 1 and value != 0 and bounds[0] != 0:
+        return bounds[0] / value if required.startswith("≥") else value / bounds[0]
+    return 2 if value != bounds[0] else 0
 
 
-def write_matrix(names, cases):
+def write_list(what, items, path):
+    """A sentence of the checks, each (name, value as shown, required, nearness): of more than four the three nearest to their bounds."""
+    shown = items if len(items) <= 4 else sorted(items, key=lambda item: -item[3])[:3]
+    nearest = "" if len(shown) == len(items) else f"; the nearest to their bounds of {len(items)} ([all](images/verification/{path.name}))"
+    return [f"Required{what}{nearest}: " + "; ".join(f"{name}: **{value}** ({required})" for name, value, required, _ in shown) + ".", ""]
+
+
+def write_matrix(names, cases, path):
     """One table of two cases; of one, or of more with a bound for all, a sentence with the range of each quantity."""
     bound = {name: {cases[case][name][1] for case in cases} for name in names}
 
     def span(name):
         values = sorted({cases[case][name][0] for case in cases}, key=float)
-        return f"{name}: **{' to '.join(dict.fromkeys((values[0], values[-1])))}** ({next(iter(bound[name]))})"
+        required = next(iter(bound[name]))
+        return name, " to ".join(dict.fromkeys((values[0], values[-1]))), required, max(nearness(value, required) for value in values)
 
     if len(cases) != 2 and all(len(required) == 1 for required in bound.values()):
         listed = f" ({'; '.join(cases)})" if len(cases) <= 5 else ""
-        return write_list(f", {next(iter(cases))}" if len(cases) == 1 else f", range over {len(cases)} cases{listed}", list(map(span, names)))
+        return write_list(f", {next(iter(cases))}" if len(cases) == 1 else f", range over {len(cases)} cases{listed}", list(map(span, names)), path)
 
     def cell(case, name):
         measured, required = cases[case][name]
@@ -82,14 +95,14 @@ def write_matrix(names, cases):
     return lines + [""]
 
 
-def write_checks(lines):
+def write_checks(lines, path):
     rows = checks(lines)
     if rows is None:
         return [HEAD, "|---|---|---|---|", *lines, ""]
     groups, plain = take_matrices(rows)
-    page = write_list("", [f"{name}: **{measured}** ({required})" for name, measured, required in plain]) if plain else []
+    page = write_list("", [(*row, nearness(*row[1:])) for row in plain], path) if plain else []
     for names, cases in groups.items():
-        page += write_matrix(names, cases)
+        page += write_matrix(names, cases, path)
     return page
 
 
@@ -116,7 +129,7 @@ def shorten(text, path):
         table = []
         while lines and lines[0].startswith("|"):
             table.append(lines.pop(0))
-        page += write_checks(table[1:]) if line == HEAD else keep(line, table, path)
+        page += write_checks(table[1:], path) if line == HEAD else keep(line, table, path)
     return re.sub(r"\n{3,}", "\n\n", "\n".join(page)).strip() + "\n"
 
 
