@@ -13,8 +13,7 @@ typedef struct surface {
     const double *position;
     int32_t *triangle; /* [triangles][3] */
     double size;
-    const double *place;
-    double spacing;
+    const sf_ridge_limits *limits;
 } surface;
 
 typedef struct vertex {
@@ -57,14 +56,14 @@ static sf_status join_nodes(const int32_t *triangle, surface *s, sf_error *err) 
 
 /* True if an angle (rad) between facets of this width (m) enters the pad by more than is small. */
 static bool is_sharp(const surface *s, double angle, double width) {
-    return angle / 4 * fmax(1, s->spacing / (2 * width)) > SF_SMOOTH_DEPTH;
+    return angle / 4 * fmax(1, s->limits->spacing / (2 * width)) > s->limits->depth;
 }
 
 /* Bits of the symmetry planes that the point lies in. */
 static int planes_of(const surface *s, const double x[3]) {
     int in = 0;
     for (int r = 0; r < 2; r++)
-        in |= (fabs(x[r] - s->place[r]) < ON_PLANE * s->size) << r;
+        in |= (fabs(x[r] - s->limits->place[r]) < ON_PLANE * s->size) << r;
     return in;
 }
 
@@ -186,8 +185,8 @@ static sf_status list_corners(const surface *s, const uint8_t *mark, sf_ridges *
 }
 
 sf_status sf_ridges_find(int64_t nodes, const double *position, int64_t triangles, const int32_t *triangle,
-                         const double place[2], double spacing, sf_ridges *out, sf_error *err) {
-    surface s = {nodes, triangles, position, NULL, 0, place, spacing};
+                         const sf_ridge_limits *limits, sf_ridges *out, sf_error *err) {
+    surface s = {nodes, triangles, position, NULL, 0, limits};
     SF_OWNED uint8_t *mark = sf_alloc(err, nodes, 1, "edges of a surface");
     *out = (sf_ridges){0};
     if (mark && join_nodes(triangle, &s, err) == SF_OK) {

@@ -4,11 +4,20 @@
 #include <stdint.h>
 
 /* The sharp edges and vertices of a triangulated rigid surface: those that would enter the faces of a pad
- * between its nodes by more than SF_SMOOTH_DEPTH of its spacing. An edge of facets that turn by the angle a,
+ * between its nodes by more than a small part of its spacing. An edge of facets that turn by the angle a,
  * each L wide, enters a chord of the length h by h a / 4, or by h^2 a / 8 L if its facets are smaller than
  * the chord. */
 
-#define SF_SMOOTH_DEPTH (1.0 / 16)
+#define SF_SMOOTH_DEPTH (1.0 / 16)  /* of the spacing, in a solid */
+#define SF_SECTION_DEPTH (1.0 / 32) /* of the spacing, in a section, where corners cost next to nothing */
+
+/* The pad decides what is sharp: by its spacing, and by its symmetry planes, in which a body goes on as its
+ * mirror image. */
+typedef struct sf_ridge_limits {
+    double place[2]; /* m, of the symmetry planes x and y; NAN: there is none */
+    double spacing;  /* m, of the pad */
+    double depth;    /* largest depth of a smooth surface, of the spacing */
+} sf_ridge_limits;
 
 /* A sharp convex edge between two facets. An edge where the surface ends is none: what lies beyond is not
  * known. In a symmetry plane the body goes on as its mirror image. */
@@ -28,9 +37,8 @@ typedef struct sf_ridges {
     double *arm;     /* [..][3] unit vectors along the edges that leave each corner */
 } sf_ridges;
 
-/* `place` [2] (m): of the symmetry planes x and y, NAN: there is none; `spacing` (m): of the pad. Nodes at
- * one place count as one. Release with sf_ridges_free, also after a failure. */
+/* Nodes at one place count as one. Release with sf_ridges_free, also after a failure. */
 sf_status sf_ridges_find(int64_t node_count, const double *position, int64_t triangle_count,
-                         const int32_t *triangle, const double place[2], double spacing, sf_ridges *out,
+                         const int32_t *triangle, const sf_ridge_limits *limits, sf_ridges *out,
                          sf_error *err);
 void sf_ridges_free(sf_ridges *ridges);

@@ -69,6 +69,13 @@ def test_corner_of_a_profile_presses_the_pad_between_its_nodes(tmp_path):
         assert next(check for check in drop["verdict"]["checks"] if check["key"] == "rim")["value"] < 0.002
 
 
+def test_rounded_edge_presses_the_pad_between_its_nodes(tmp_path):
+    # Meshes of 1.25 mm have 63.1 g, HIC 169.8 and 24.89 mm; where the rounding of 6 mm pressed nodes alone, 5 mm gave 62.56 g and HIC 168.2.
+    drop = figures(tmp_path, ROOT / "examples/flat-disc/case.cfg", "geometry.parameters.fine_spacing=5.0", "geometry.parameters.outer_spacing=12.0", options=["--axisymmetric", "--estimate"])
+    for key, value, bound in (("a_max_g", 63.1, 0.004), ("hic", 169.8, 0.005), ("max_indentation_mm", 24.89, 0.002)):
+        assert drop[key] == pytest.approx(value, rel=bound), key
+
+
 def test_nothing_moves_out_of_the_section(tmp_path):
     # A smooth missile pushes a foam that locks up off its pole: without a bound along y a rounding error grew to 16 mm, with 2 % of the momentum lost.
     foam = f"material=@{ROOT}/examples/materials/eva35_posterior/draw-001.cfg"

@@ -461,8 +461,10 @@ static sf_status measure_body(const sf_results *r, const faces *f, const sf_fram
     SF_OWNED_BY(sf_ridges_free) sf_ridges sharp = {0};
     if (f->count == 0 || triangles == 0)
         return SF_OK;
-    SF_TRY(
-        sf_ridges_find(nodes, position, triangles, triangle, r->symmetry_place, cut->spacing, &sharp, err));
+    sf_ridge_limits limits = {.spacing = cut->spacing,
+                              .depth = r->axisymmetric ? SF_SECTION_DEPTH : SF_SMOOTH_DEPTH};
+    memcpy(limits.place, r->symmetry_place, sizeof limits.place);
+    SF_TRY(sf_ridges_find(nodes, position, triangles, triangle, &limits, &sharp, err));
     for (int64_t k = 0; k < sharp.count; k++)
         measure_edge(r, f, head, &position[3 * (int64_t)sharp.ridge[k].node[0]],
                      &position[3 * (int64_t)sharp.ridge[k].node[1]], 0, cut);

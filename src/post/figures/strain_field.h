@@ -35,7 +35,7 @@ double sf_strain_field_energy_beyond(const sf_results *results, const double *co
 
 /* The depth of missile or supports in the foam between its nodes. */
 typedef struct sf_rim_cut {
-    double depth;    /* m, from the nearest free face; of smooth surfaces the part beyond SF_SMOOTH_DEPTH */
+    double depth;    /* m, from the nearest free face; of smooth surfaces the part beyond what is sharp */
     double share;    /* -, largest of it over the shortest edge of its face */
     double spacing;  /* m, shortest edge of all faces; INFINITY: there are none */
     double place[3]; /* m, of a node of that face at rest */

@@ -103,7 +103,10 @@ static sf_status build(const sf_model *m, bool missile, rest_state *rest, sf_sha
     rest->near = ON_PLANE * m->thickness;
     for (int r = 0; r < 2; r++)
         rest->plane[r] = sf_symmetry_plane(m, r, &rest->plane[r]) ? rest->plane[r] : NAN;
-    SF_TRY(sf_ridges_find(nodes, e->position, triangles, triangle, rest->plane, e->spacing, &e->ridges, err));
+    sf_ridge_limits limits = {.spacing = e->spacing,
+                              .depth = m->axisymmetric ? SF_SECTION_DEPTH : SF_SMOOTH_DEPTH};
+    memcpy(limits.place, rest->plane, sizeof limits.place);
+    SF_TRY(sf_ridges_find(nodes, e->position, triangles, triangle, &limits, &e->ridges, err));
     if (m->axisymmetric)
         return list_sides(e, err);
     if (e->ridges.corner_count == 0) {
