@@ -28,13 +28,66 @@ static void put_meaning(FILE *f, const char *description, const char *remark) {
     fputs(" |\n", f);
 }
 
+/* A component of a vector: the end of a name, behind its last "_", with the name's description. */
+typedef struct component {
+    const char *name, *end, *description;
+} component;
+
+static component component_of(const char *name, const char *description) {
+    const char *last = strrchr(name, '_');
+    return (component){name, last ? last + 1 : name + strlen(name), description};
+}
+
+/* Where the end of c's name stands as the last word of a clause of its description; NULL: nowhere. */
+static const char *end_in_meaning(const component *c) {
+    char words[32];
+    snprintf(words, sizeof words, " %s", c->end);
+    const char *at = *c->end ? strstr(c->description, words) : NULL;
+    return at && (at[strlen(words)] == '\0' || at[strlen(words)] == ';') ? at : NULL;
+}
+
+/* True if the names are components of one vector: the descriptions differ in the component alone, but for
+ * what the first one's says behind it. */
+static bool are_one_vector(const component *first, const component *next) {
+    const char *at = end_in_meaning(first), *there = end_in_meaning(next);
+    ptrdiff_t stem = first->end - first->name, before = at ? at - first->description : 0;
+    return at && there && stem == next->end - next->name && there - next->description == before &&
+           strncmp(first->name, next->name, (size_t)stem) == 0 &&
+           strncmp(first->description, next->description, (size_t)before) == 0 &&
+           there[1 + strlen(next->end)] == '\0';
+}
+
+/* The meaning of `count` components: that of the first one, with the ends of all names. */
+static void put_components(FILE *f, const component *of, int count, const char *remark) {
+    const char *at = count > 1 ? end_in_meaning(&of[0]) : NULL;
+    if (at) {
+        fprintf(f, "%.*s", (int)(at - of[0].description), of[0].description);
+        for (int k = 0; k < count; k++)
+            fprintf(f, "%s %s", k ? "," : "", of[k].end);
+        put_meaning(f, at + 1 + strlen(of[0].end), remark);
+    } else {
+        put_meaning(f, of[0].description, remark);
+    }
+}
+
+enum { MOST_COMPONENTS = 4 };
+
 static void put_history(FILE *f) {
     fputs("| dataset | units | in history.csv | meaning |\n|---|---|---|---|\n", f);
-    for (int k = 0; k < SF_HISTORY_COUNT; k++) {
+    for (int k = 0, count; k < SF_HISTORY_COUNT; k += count) {
         const sf_history_column *c = sf_history_column_get(k);
-        fprintf(f, "| `%s` | %s | %s%s%s | ", c->name, c->units, c->csv ? "`" : "",
+        component of[MOST_COMPONENTS] = {component_of(c->name, c->description)};
+        fprintf(f, "| `%s`", c->name);
+        for (count = 1; count < MOST_COMPONENTS && k + count < SF_HISTORY_COUNT; count++) {
+            const sf_history_column *next = sf_history_column_get(k + count);
+            of[count] = component_of(next->name, next->description);
+            if (!are_one_vector(&of[0], &of[count]))
+                break;
+            fprintf(f, ", `%s`", next->name);
+        }
+        fprintf(f, " | %s | %s%s%s | ", strcmp(c->units, "1") == 0 ? "" : c->units, c->csv ? "`" : "",
                 c->csv ? c->csv : "raw and filtered", c->csv ? "`" : "");
-        put_meaning(f, c->description, c->remark);
+        put_components(f, of, count, c->remark);
     }
 }
 
@@ -45,7 +98,7 @@ static void put_frame_fields(FILE *f) {
         fprintf(f, "| `%s` | (n", i->name);
         if (i->components > 1)
             fprintf(f, ", %d", i->components);
-        fprintf(f, ") | %s | `%s` | ", i->units, i->array);
+        fprintf(f, ") | %s | `%s` | ", strcmp(i->units, "1") == 0 ? "" : i->units, i->array);
         put_meaning(f, i->description, i->remark);
     }
 }
@@ -106,19 +159,25 @@ static void put_model(FILE *f) {
     size_t count;
     const sf_model_field *field = sf_model_fields(&count);
     fputs("| dataset | type | shape | units | meaning |\n|---|---|---|---|---|\n", f);
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0, n; k < count; k += n) {
         const sf_model_field *m = &field[k];
-        fprintf(f, "| `%s` | %s | ", m->path, types[m->type]);
-        if (m->rows_offset == SIZE_MAX) {
-            fputs("scalar", f);
-        } else {
+        component of[MOST_COMPONENTS] = {component_of(m->path, m->description)};
+        fprintf(f, "| `%s`", m->path);
+        for (n = 1; n < MOST_COMPONENTS && k + n < count; n++) {
+            of[n] = component_of(m[n].path, m[n].description);
+            if (!are_one_vector(&of[0], &of[n]) || strcmp(m->units, m[n].units) != 0)
+                break;
+            fprintf(f, ", `_%s`", of[n].end);
+        }
+        fprintf(f, " | %s | ", m->type == SF_H5_F64 ? "" : types[m->type]);
+        if (m->rows_offset != SIZE_MAX) {
             fprintf(f, "(`%s`%s", count_path(m->rows_offset), m->rows_extra ? " + 1" : "");
             if (m->columns > 1)
                 fprintf(f, ", %d", m->columns);
             fputc(')', f);
         }
-        fprintf(f, " | %s | ", m->units);
-        put_meaning(f, m->description, "");
+        fprintf(f, " | %s | ", strcmp(m->units, "1") == 0 ? "" : m->units);
+        put_components(f, of, (int)n, "");
     }
 }
 

@@ -5,17 +5,20 @@
     tools/verification_page.py SECTION.md... >docs/verification.md
 
 A study writes each check as a row "quantity | measured | required | pass". Checks "case: quantity" that several cases share
-become the range of each quantity, in a sentence or a list. A table named in KEPT leaves some of its rows, or all, to
-its section, with a link. Every bound stays."""
+become the range of each quantity. Of more than four checks the three nearest to their bounds stand on the page. Tables that KEPT
+does not name stay whole; of paragraphs the page has two sentences, of those in WHOLE all, of later ones under a heading none
+unless a table or checks follow. A link after each title leads to the section, which has everything."""
 import pathlib
 import re
 import sys
 
+WHOLE = ("At 42 mm the difference", "With a prescribed depth", "The sphere and the quarter pad", "Identities that hold", "There is no contact stiffness")
+SENTENCE_END = re.compile(r"(?<=[.)]) (?=[A-Z*])")
 HEAD = "| quantity | measured | required | |"
 KEPT = {  # first column of a table: the rows of which one of the first two cells matches; None if the checks below it say enough
     "mesh": None, "body force": None, "foam law": None, "cloud": None, "cells along L": None, "Δt / limit": None, "k h / π": None,
     "spacing h, mm": None, "depth, mm": None, "friction coefficient": None, "mean strain": None, "Z₂/Z₁": None,
-    "depth": r"(10|20|30|38|40|42) mm", "case": r"5\.000|→ 0",
+    "depth": r"(20|30|38|42) mm", "case": r"5\.000|→ 0",
     "change": r"stabilisation 0\.5|smooth .*|friction .*|DAMP 0|no (rate|hyst|grav).*|tension .*|(speed|mass) .*"}
 
 
@@ -53,11 +56,23 @@ def take_matrices(rows):
     return groups, plain
 
 
+def nearness(measured, required):
+    """How near a value is to its bound: 0 far within, 1 at the bound, 2 if the bound cannot be read."""
+    value, bounds = float(measured), [float(number) for number in re.findall(r"-?[\d.]+(?:e[-+]?\d+)?", required)]
+    if len(bounds) == 2 and bounds[0] == 0:
+        return abs(value) / bounds[1]
+    if len(bounds) == 2 and bounds[0] < bounds[1]:
+        return abs(2 * value - bounds[0] - bounds[1]) / (bounds[1] - bounds[0])
+    if len(bounds) == 1 and value != 0 and bounds[0] != 0:
+        return bounds[0] / value if required.startswith("≥") else value / bounds[0]
+    return 2 if value != bounds[0] else 0
+
+
 def write_list(what, items):
-    """A sentence, or a list of more than three items."""
-    if len(items) <= 3:
-        return [f"Required{what}: " + "; ".join(items) + ".", ""]
-    return [f"Required{what}:", "", *(f"- {item}" for item in items), ""]
+    """A sentence of the checks, each (name, value as shown, required, nearness): of more than four the three nearest to their bounds."""
+    shown = items if len(items) <= 4 else sorted(items, key=lambda item: -item[3])[:3]
+    nearest = "" if len(shown) == len(items) else f", the nearest to their bounds of {len(items)}"
+    return [f"Required{what}{nearest}: " + "; ".join(f"{name}: **{value}** ({required})" for name, value, required, _ in shown) + ".", ""]
 
 
 def write_matrix(names, cases):
@@ -66,7 +81,8 @@ def write_matrix(names, cases):
 
     def span(name):
         values = sorted({cases[case][name][0] for case in cases}, key=float)
-        return f"{name}: **{' to '.join(dict.fromkeys((values[0], values[-1])))}** ({next(iter(bound[name]))})"
+        required = next(iter(bound[name]))
+        return name, " to ".join(dict.fromkeys((values[0], values[-1]))), required, max(nearness(value, required) for value in values)
 
     if len(cases) != 2 and all(len(required) == 1 for required in bound.values()):
         listed = f" ({'; '.join(cases)})" if len(cases) <= 5 else ""
@@ -87,36 +103,47 @@ def write_checks(lines):
     if rows is None:
         return [HEAD, "|---|---|---|---|", *lines, ""]
     groups, plain = take_matrices(rows)
-    page = write_list("", [f"{name}: **{measured}** ({required})" for name, measured, required in plain]) if plain else []
+    page = write_list("", [(*row, nearness(*row[1:])) for row in plain]) if plain else []
     for names, cases in groups.items():
         page += write_matrix(names, cases)
     return page
 
 
-def keep(head, lines, path):
-    """The rows that KEPT leaves of a table, and where the others are."""
+def keep(head, lines):
+    """The rows that KEPT leaves of a table."""
     title = head.strip("|").split("|")[0].strip()
     if title not in KEPT:
         return [head, *lines]
     rows, pattern = lines[1:], KEPT[title]
     kept = [row for row in rows if pattern and any(re.fullmatch(pattern, cell.strip()) for cell in row.strip("|").split("|")[:2])]
-    link = f"[{path.name}](images/verification/{path.name})"
-    if len(kept) == len(rows):
-        return [head, *lines]
-    return [head, lines[0], *kept, "", f"All {len(rows)} rows: {link}."] if kept else [f"Table: {link}."]
+    left_out = [] if len(kept) == len(rows) else ["", f"({len(kept)} of {len(rows)} rows.)"]
+    return [head, lines[0], *kept, *left_out] if kept else []
 
 
 def shorten(text, path):
-    page, lines = [], text.split("\n")
-    while lines:
-        line = lines.pop(0)
-        if not line.startswith("|"):
-            page.append(line)
-            continue
-        table = []
-        while lines and lines[0].startswith("|"):
-            table.append(lines.pop(0))
-        page += write_checks(table[1:]) if line == HEAD else keep(line, table, path)
+    """The section as the page has it: headings, pictures, lists, checks, tables and the prose that belongs to them."""
+    page, first, linked = [], True, False  # first: no paragraph since the heading
+    blocks = [block for block in re.split(r"\n{2,}", text.strip()) if block]
+    for k, block in enumerate(blocks):
+        lines = block.split("\n")
+        if lines[0].startswith("|"):
+            page += [*(write_checks(lines[2:]) if lines[0] == HEAD else keep(lines[0], lines[1:])), ""]
+        elif lines[0].startswith("#"):
+            page += [lines[0], ""]
+            first = True
+        elif re.match(r"- |!\[|\d+\.", lines[0]):
+            page += [*lines, ""]
+        else:
+            follows = blocks[k + 1].split("\n") if k + 1 < len(blocks) else [""]
+            leads = follows[0] == HEAD or (follows[0].startswith("|") and keep(follows[0], follows[1:]))
+            if block.startswith(WHOLE):
+                page += [block, ""]
+            elif first or leads or block.endswith(":"):
+                page += [" ".join(SENTENCE_END.split(block)[:2]), ""]
+            first = False
+        if not linked and page and page[0].startswith("## ") and (len(page) > 2 or len(blocks) == 1):
+            page[2:2] = [f"([The whole section](images/verification/{path.name}))", ""]
+            linked = True
     return re.sub(r"\n{3,}", "\n\n", "\n".join(page)).strip() + "\n"
 
 

@@ -37,7 +37,8 @@ def _described(key: str) -> tuple[str, str, str]:
     """Returns the row of a key; that of a layer has the row of the material."""
     known = table()
     plain = re.sub(r"^materials\.[^.]+", "material", key)
-    return known.get(key) or known.get(plain) or known.get(re.sub(r"^supports?\.\d+", "support", key)) or ("", "", "")
+    alike = re.sub(r"^material\.term_\d", "material.term_2", plain)
+    return known.get(key) or known.get(plain) or known.get(alike) or known.get(re.sub(r"^supports?\.\d+", "support", key)) or ("", "", "")
 
 
 def _text(value: Any) -> str:

@@ -131,29 +131,80 @@ static void print_row(FILE *file, const sf_key *key) {
     fprintf(file, " | %s |\n", key->description);
 }
 
-/* `law`: of a law that is not the default, only the keys that it adds; else NULL. */
-static void print_list(FILE *file, const sf_key_list *list, const char *law) {
-    const char *group = "";
-    for (size_t k = 0; k < list->count; k++) {
-        const sf_key *key = &list->key[k];
-        if (law && !key->in_card)
-            continue;
-        if (strcmp(group, key->group) != 0) {
-            group = key->group;
-            fprintf(file, "%s### %s%s%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
-                    k ? "\n" : "", group, law ? " of law " : "", law ? law : "");
+/* True if both keys are written, bounded and explained alike; their groups may differ. */
+static bool are_alike(const sf_key *a, const sf_key *b) {
+    return strcmp(a->name, b->name) == 0 && strcmp(a->description, b->description) == 0 &&
+           a->kind == b->kind && a->low == b->low && a->high == b->high &&
+           strcmp(a->fallback ? a->fallback : "", b->fallback ? b->fallback : "") == 0;
+}
+
+/* True if `list` has a key of the same group like this one. */
+static bool has_key(const sf_key_list *list, const sf_key *key) {
+    const sf_key *other = sf_case_find_key(list, key->group, key->name);
+    return other && are_alike(other, key);
+}
+
+/* Prints the keys of the group with the number `first` and on that `other` has not. */
+static void print_group(FILE *file, const sf_key_list *list, size_t first, const sf_key_list *other,
+                        const char *law) {
+    const char *group = list->key[first].group;
+    fprintf(file, "### %s%s%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n", group,
+            law ? " of law " : "", law ? law : "");
+    for (size_t k = first; k < list->count; k++)
+        if (strcmp(list->key[k].group, group) == 0 && (!other || !has_key(other, &list->key[k])))
+            print_row(file, &list->key[k]);
+    fputs("\n", file);
+}
+
+/* True if an earlier key that is printed has the same group. */
+static bool is_printed(const sf_key_list *list, size_t k, const sf_key_list *other) {
+    for (size_t j = 0; j < k; j++)
+        if (strcmp(list->key[j].group, list->key[k].group) == 0 && (!other || !has_key(other, &list->key[j])))
+            return true;
+    return false;
+}
+
+/* True if the keys of the group that begins at k are those of the group before it. */
+static bool repeats_group(const sf_key_list *list, size_t k) {
+    size_t n = 0;
+    while (k + n < list->count && strcmp(list->key[k + n].group, list->key[k].group) == 0)
+        n++;
+    for (size_t i = 0; i < n; i++)
+        if (k < n || !are_alike(&list->key[k + i], &list->key[k - n + i]))
+            return false;
+    return true;
+}
+
+/* `other`: of a law that is not the default, the keys of the default, which are named only; else NULL. */
+static void print_list(FILE *file, const sf_key_list *list, const sf_key_list *other, const char *law) {
+    const char *between = "";
+    if (other)
+        fprintf(file, "The law %s has these keys of the other law, too:", law);
+    for (size_t k = 0; other && k < list->count; k++)
+        if (list->key[k].in_card && has_key(other, &list->key[k])) {
+            fprintf(file, "%s `%s.%s`", between, list->key[k].group, list->key[k].name);
+            between = ",";
         }
-        print_row(file, key);
+    fputs(other ? ".\n\n" : "", file);
+    for (size_t k = 0; k < list->count; k++) {
+        if ((other && (!list->key[k].in_card || has_key(other, &list->key[k]))) || is_printed(list, k, other))
+            continue;
+        if (repeats_group(list, k))
+            fprintf(file, "`%s` has the keys of the group before it.\n\n", list->key[k].group);
+        else
+            print_group(file, list, k, other, law);
     }
 }
 
 void sf_case_print_keys(FILE *file) {
-    sf_key_list list;
-    for (int k = 0; sf_law_get(k); k++) {
+    sf_key_list usual, list;
+    sf_case_list_keys(sf_law_get(0), &usual);
+    print_list(file, &usual, NULL, NULL);
+    for (int k = 1; sf_law_get(k); k++) {
         sf_case_list_keys(sf_law_get(k), &list);
-        print_list(file, &list, k ? sf_law_get(k)->name : NULL);
+        print_list(file, &list, &usual, sf_law_get(k)->name);
     }
-    fputs("\n### Units\n\n", file);
+    fputs("### Units\n\n", file);
     sf_unit_text_print(file);
 }
 

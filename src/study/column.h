@@ -6,7 +6,7 @@
 #include "post/figures/injury.h"
 #include "post/results/results.h"
 
-/* The drop as uncoupled columns (theory, section "Columns"): every piece of the missile's surface compresses
+/* The drop as uncoupled columns (theory, section 9): every piece of the missile's surface compresses
  * the foam below it as if the neighbouring foam and the pad's mass were not there,
  *
  *     F(t) = sum_k A_k P(eps_k, history),   eps_k = (delta - g_k) / H,   m d2(delta)/dt2 = m g - F.

@@ -4,7 +4,7 @@
 #pragma once
 #include "post/figures/signal.h"
 
-/* Head injury criterion of a piecewise-linear deceleration curve (FMVSS 208; theory, section "Injury
+/* Head injury criterion of a piecewise-linear deceleration curve (FMVSS 208; theory, section "Reported
  * figures"):
  *
  *     HIC = max over t1 < t2, t2 - t1 <= window, of (t2 - t1) [ 1/(t2 - t1) int_t1^t2 a dt ]^2.5,   a in g, t
