@@ -5,8 +5,82 @@
 #include "base/text.h"
 #include "build_info.h"
 #include "post/results/origin.h"
-#include "post/view/report.h"
+#include "report/html.h"
 #include "report/chart.h"
+
+/* ---- the material ---- */
+
+/* Without the brackets and quotes of the case's syntax. */
+static void tidy(char *value) {
+    char *to = value, *end;
+    for (const char *from = value; *from; from++)
+        if (!strchr("{}[]\"", *from) && (to > value || *from != ' '))
+            *to++ = *from;
+    for (end = to; end > value && strchr(" ;", end[-1]); end--)
+        ;
+    *end = '\0';
+}
+
+/* Rows with the values of keys, each given as key and title, until a key is NULL. */
+static void put_keys(sf_html_table *table, const char *parameters, const sf_named_text *list) {
+    for (sf_origin_key key; (*list)[0]; list++) {
+        if (!sf_origin_find(parameters, (*list)[0], &key) || strcmp(key.value, "(absent)") == 0)
+            continue;
+        tidy(key.value);
+        if (*key.value)
+            sf_html_fact(table, (*list)[1], "%s", key.value);
+    }
+}
+#define SF_ORIGIN_PUT(table, parameters, ...)                                                                \
+    put_keys(table, parameters, (const sf_named_text[]){__VA_ARGS__, {0}})
+
+/* The keys of the material that the case gives, and whether it says what its data inform. `group`: with its
+ * point at the end. */
+static void put_given(FILE *page, const char *parameters, const char *group) {
+    sf_origin_key key;
+    SF_HTML_TABLE table = sf_html_table_begin(page, NULL);
+    SF_PRINTED(informed, SF_ORIGIN_NAME_SIZE + 32, "%sinformed_strain", group);
+    if (sf_origin_find(parameters, informed, &key) && !key.given)
+        sf_html_fact(&table, "informed_strain", "not given: the end of the curve is taken for it");
+    while (sf_origin_next(&parameters, &key))
+        if (key.given && strncmp(key.name, group, strlen(group)) == 0)
+            sf_html_fact(&table, key.name + strlen(group), "%s", key.value);
+}
+
+/* `layer` NULL: of a pad of one material. */
+static void put_material(FILE *page, const char *case_text, const char *parameters, const char *layer) {
+    SF_OWNED char *origin = sf_origin_material(case_text, layer);
+    SF_PRINTED(heading, SF_ORIGIN_NAME_SIZE + 32, "Material%s%s", layer ? " of the layer " : "",
+               layer ? layer : "");
+    SF_PRINTED(group, SF_ORIGIN_NAME_SIZE + 16, "material%s%s.", layer ? "s." : "", layer ? layer : "");
+    SF_HTML_BLOCK(page, heading);
+    SF_HTML_DIVISION(page, "columns narrow");
+    put_given(page, parameters, group);
+    SF_HTML_DIVISION(page, "block");
+    sf_html_note(
+        page, "Origin, and the range that its data inform, as its file says. Keys not listed have defaults.");
+    sf_html_prose(page,
+                  origin && *origin ? origin : "The case says nothing about the origin of the material.");
+}
+
+static void put_materials(FILE *page, const char *case_text, const char *parameters) {
+    static const char group[] = "materials.";
+    char last[SF_ORIGIN_NAME_SIZE] = "";
+    const char *rest = parameters;
+    sf_origin_key key;
+    while (sf_origin_next(&rest, &key)) {
+        if (strncmp(key.name, group, strlen(group)) != 0)
+            continue;
+        char *name = key.name + strlen(group);
+        name[strcspn(name, ".")] = '\0';
+        if (strcmp(name, last) == 0)
+            continue;
+        snprintf(last, sizeof last, "%.*s", (int)sizeof last - 1, name);
+        put_material(page, case_text, parameters, name);
+    }
+    if (!*last)
+        put_material(page, case_text, parameters, NULL);
+}
 
 /* ---- the picture ---- */
 
@@ -424,6 +498,6 @@ sf_status sf_cfh_write_page(const sf_staging *output, const sf_cfh_report *r, sf
     put_tiles(page, r);
     put_top(page, output, r);
     put_drops(page, r);
-    sf_origin_put_material(page, r->case_text, r->parameters);
+    put_materials(page, r->case_text, r->parameters);
     return sf_html_end(page, r->command_line, "softfall-cfh " SF_VERSION " (" SF_GIT_REVISION ")", err);
 }
