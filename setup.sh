@@ -7,7 +7,7 @@ usage() {
     cat <<'TEXT'
 usage: ./setup.sh WORD [--force] [--no-install] [--label LABEL]
 
-  demo     build, then run examples/eva50-v4.5 through all three programs into out/eva50-v4.5
+  demo     build, then run examples/eva50-v4.5 through all three programs into out/eva50-v4.5, with its report
   test     build, then run the tests (all but the slow ones)
   slow     build, then run the slow tests
   build    build only: the programs are in build/bin
@@ -106,6 +106,7 @@ demo() {
     echo "  $dir/model.h5           the model of softfall-pre"
     echo "  $dir/results.h5         the results of softfall-solve"
     echo "  $report         the figures above"
+    [ ! -f "$dir/report.html" ] || echo "  $dir/report.html        the page of the drop"
     echo "The files are in $PWD. Next: docs/guide.md explains how to read the results and change the case."
 }
 

@@ -17,8 +17,7 @@ foreach(name geo examples)
     file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${name} ${CMAKE_BINARY_DIR}/share/softfall/${name} SYMBOLIC)
     install(DIRECTORY ${CMAKE_SOURCE_DIR}/${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/softfall USE_SOURCE_PERMISSIONS)
 endforeach()
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/softfall USE_SOURCE_PERMISSIONS
-        PATTERN report.css EXCLUDE) # it is part of the programs
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/softfall USE_SOURCE_PERMISSIONS)
 
 # The documents, with the folders that they name beside them.
 foreach(name README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md CITATION.cff LICENSE)

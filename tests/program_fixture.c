@@ -146,7 +146,7 @@ program_result program_figures(const program_place *place, const char *format, .
     char command[COMMAND_SIZE];
     va_list args;
     va_start(args, format);
-    program_command(command, "PATH=/nowhere ", "post --view 0", format, args);
+    program_command(command, "", "post --view 0", format, args);
     va_end(args);
     return succeed(place, command);
 }

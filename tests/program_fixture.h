@@ -53,8 +53,7 @@ program_result program_run(const program_place *place, const char *name, const c
 /* The same, and fails the test with the program's words unless it exits with 0. */
 program_result program_succeed(const program_place *place, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Succeeds with softfall-post as it runs where there is no gnuplot, and without view.html: pictures take most
- * of its time. */
+/* Succeeds with softfall-post without view.html, which takes most of its time. */
 program_result program_figures(const program_place *place, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

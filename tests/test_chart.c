@@ -89,23 +89,6 @@ static void every_kind_is_drawn(void **state) {
     assert_int_equal(program_shell(p, "find . -name injected | grep .").code, 1);
 }
 
-static void a_chart_for_a_page_leaves_no_file(void **state) {
-    const program_place *p = *state;
-    sf_error err;
-    sf_staging output;
-    char warning[320];
-    check_programs("gnuplot");
-    begin(p, &output, &err);
-    sf_chart *chart = make_chart(&err);
-    char *svg = sf_chart_page(chart, &output, "softfall-test", warning, sizeof warning, &err);
-    assert_non_null(svg);
-    assert_false(sf_staging_has(&output, "all.gp"));
-    assert_false(sf_staging_has(&output, "all.png"));
-    free(svg);
-    sf_chart_free(chart);
-    sf_staging_end(&output);
-}
-
 static void without_gnuplot_the_script_stays_and_a_warning_says_so(void **state) {
     const program_place *p = *state;
     sf_error err;
@@ -140,7 +123,6 @@ static void a_failure_before_is_returned_by_the_last_call(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_is_drawn),
-        cmocka_unit_test(a_chart_for_a_page_leaves_no_file),
         cmocka_unit_test(without_gnuplot_the_script_stays_and_a_warning_says_so),
         cmocka_unit_test(a_failure_before_is_returned_by_the_last_call),
     };

@@ -224,18 +224,12 @@ static void the_missile_turns_in_paraview(void **state) {
     int64_t row = sf_history_row_of_largest(&r.history, r.history.contact_force);
     while (r.history.time[row] < r.peak.time)
         row++;
-    char peak[64]; /* the resultant, in the title of the picture */
-    snprintf(peak, sizeof peak, ": %.0f g, peak", sf_figures_reading(&r, row));
     assert_true(sf_figures_reading(&r, row) > 1.003 * r.peak.acceleration / SF_STANDARD_GRAVITY);
     sf_results_close(&r);
     program_result made = program_succeed(p, "post", "full.h5 -o out");
     assert_non_null(strstr(made.out, "free missile: a_max, HIC and all that follows of the resultant"));
     assert_non_null(strstr(made.out, "edge and scatter: not estimated of a free missile"));
     assert_non_null(strstr(made.out, "angular acceleration"));
-    assert_null(strstr(made.err, "gnuplot"));
-    program_assert_page(p, "out/report.html", "resultant");
-    program_assert_page(p, "out/report.html", peak);
-    program_assert_page(p, "out/report.html", "edge and scatter: not estimated");
 }
 
 int main(void) {

@@ -65,7 +65,7 @@ static void the_commands_of_the_readme_run(void **state) {
         "awk '/^```/ { inside = !inside; take = 0; next } inside && /^softfall-new/ { take = 1 } take' "
         "\"$SF_SOURCE_DIR/README.md\" > steps && test $(grep -c '^softfall-' steps) = 4 && "
         "sed \"s/^softfall-new [^#]*/&%s --set solver.end_time='1 ms' /\" steps > coarse && sh -e ./coarse && "
-        "test -s my-pad/out/report.html",
+        "test -s my-pad/out/summary.json && test -s my-pad/out/report.html",
         program_coarse(20));
     if (r.code != 0)
         fail_msg("%s%s", r.out, r.err);

@@ -37,14 +37,13 @@ static bool moves_files(unsigned long long number) {
     return false;
 }
 
-/* softfall-post of other.h5 into pair/, traced; without gnuplot, which takes long. */
+/* softfall-post of other.h5 into pair/, traced. */
 static pid_t start(const program_place *p) {
     char program[1024];
     snprintf(program, sizeof program, "%s/softfall-post", getenv("SF_BIN_DIR"));
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
-        setenv("PATH", "/nowhere", 1);
         setenv("ASAN_OPTIONS", "detect_leaks=0",
                1); /* the leak sanitizer does not work in a traced process */
         if (chdir(p->folder) != 0 || !freopen("log", "w", stdout) || !freopen("errors", "w", stderr) ||

@@ -313,7 +313,6 @@ static void a_loose_cover_acts_as_a_glued_one_while_it_is_pressed(void **state) 
     print_message("a_max %.2f g glued, %.2f g loose; momentum %.1e, angular %.1e, penetration %.2g mm\n",
                   tied, open, loose.momentum, loose.angular, loose.penetration);
     assert_relative(open, tied, 0.005);
-    assert_int_equal(program_shell(p, "grep -q 'upper, cover: loose, friction 0' out/report.html").code, 0);
     assert_true(glued.energy_error < 1e-3 && loose.energy_error < 1e-3);
     assert_true(loose.momentum < 1e-12 && loose.angular < 1e-9);
     static const struct {

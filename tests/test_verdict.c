@@ -351,11 +351,6 @@ static void softfall_post_shows_the_verdict_first_and_in_summary_json(void **sta
     assert_prints(p, "all(r['why'] and r['unit'] and r['finding'] for r in v['checks'])", "True");
     assert_prints(p, "[(l['key'], l['bound'], l['passed']) for l in v['limits']]",
                   "[('a_max_g', 50, False), ('hic', 1700, True)]");
-    assert_int_equal(
-        program_shell(p, "grep -q 'valid with remarks' out/acceleration.gp && grep -q 'limit 50: failed' "
-                         "out/acceleration.gp && grep -q '^plot 50 with lines' out/acceleration.gp")
-            .code,
-        0);
 }
 
 static void softfall_post_does_not_judge_the_limits_of_a_run_that_ended_on_the_anvil(void **state) {
@@ -365,7 +360,6 @@ static void softfall_post_does_not_judge_the_limits_of_a_run_that_ended_on_the_a
     assert_non_null(strstr(r.out, "limit of a_max    200: not judged (100)"));
     assert_null(strstr(r.out, ": passed"));
     assert_prints(p, "[l['passed'] for l in v['limits']]", "[None, None]");
-    assert_int_equal(program_shell(p, "grep -q 'limit 200 g: not judged' out/report.html").code, 0);
 }
 
 /* The only thing to say of such a run is its own sentence. */

@@ -168,8 +168,7 @@ static void the_page_keeps_to_its_size(void **state) {
     program_result r = program_succeed(p, "post", "quarter_results.h5 -o size --force --view 0.15");
     assert_non_null(
         strstr(r.err, "nodes of the pad's surface do not fit into 0.15 MB (--view MB allows more)"));
-    assert_int_equal(program_shell(p, "test -e size/view.html || grep -q view.html size/report.html").code,
-                     1);
+    assert_int_equal(program_shell(p, "test -e size/view.html").code, 1);
     r = program_succeed(p, "post", "quarter_results.h5 -o size --force --view 0");
     assert_null(strstr(r.err, "view.html"));
     assert_int_equal(program_shell(p, "test -e size/view.html").code, 1);
@@ -184,11 +183,6 @@ static void a_size_that_is_none_is_refused(void **state) {
         assert_non_null(strstr(r.err, "expected a size from 0 to 200 MB"));
         assert_int_equal(program_shell(p, "test -e refused").code, 1);
     }
-}
-
-static void the_report_leads_to_the_page(void **state) {
-    const program_place *p = *state;
-    assert_int_equal(program_shell(p, "grep -q 'href=\"view.html\"' quarter/report.html").code, 0);
 }
 
 /* The frames that are shown among too many have the peak and the last. */
@@ -223,7 +217,7 @@ static void a_run_without_frames_has_no_page(void **state) {
     H5Fclose(file);
     assert_int_equal(sf_seal_add(program_path(p, "none.h5"), SF_IGNORED), SF_OK);
     program_run(p, "post", "none.h5 -o none");
-    assert_int_equal(program_shell(p, "test -e none/report.html && ! test -e none/view.html").code, 0);
+    assert_int_equal(program_shell(p, "test -e none/summary.json && ! test -e none/view.html").code, 0);
 }
 
 static void a_page_without_its_template_is_a_warning(void **state) {
@@ -234,23 +228,7 @@ static void a_page_without_its_template_is_a_warning(void **state) {
     assert_non_null(strstr(r.err, "warning: there is no view.html: "));
 }
 
-/* ---- report.html ---- */
-
-static void the_report_prints_on_two_pages(void **state) {
-    const program_place *p = *state;
-    const char *const folders[] = {"quarter", "pressed"};
-    check_programs("chromium");
-    for (size_t k = 0; k < 2; k++) {
-        program_result r = program_shell(
-            p,
-            "chromium --headless=new --no-sandbox --disable-gpu --user-data-dir=profile --no-pdf-header-footer "
-            "--print-to-pdf=%s.pdf %s/report.html >print.log 2>&1; "
-            "python3 -c \"import re; print(len(re.findall(rb'/Type */Page\\b', open('%s.pdf', 'rb').read())))\"",
-            folders[k], folders[k], folders[k]);
-        if (strcmp(r.out, "2\n") != 0)
-            fail_msg("%s: pages: %s%s", folders[k], r.out, r.err);
-    }
-}
+/* ---- words of the case ---- */
 
 static char *hash_of(const program_place *p, const char *results) {
     sf_error err = SF_ERROR_INIT;
@@ -262,7 +240,7 @@ static char *hash_of(const program_place *p, const char *results) {
 }
 
 /* Words may be anything; they change no model. */
-static void words_about_the_test_stand_in_report_and_summary(void **state) {
+static void words_about_the_test_stand_in_the_summary(void **state) {
     const program_place *p = *state;
     program_succeed(
         p, "pre",
@@ -273,8 +251,6 @@ static void words_about_the_test_stand_in_report_and_summary(void **state) {
     program_succeed(p, "solve", "words.h5 -o words_results.h5 -t 1");
     program_succeed(p, "solve", "plain.h5 -o plain_results.h5 -t 1");
     program_succeed(p, "post", "words_results.h5 -o words");
-    program_assert_page(p, "words/report.html", "tile \"A\" {1} [x] \\ </script> & co");
-    program_assert_page(p, "words/report.html", "23 °C, 50 %");
     program_result r =
         program_shell(p, "python3 -c \"import json; s = json.load(open('words/summary.json')); "
                          "print(s['sample'], s['laboratory'], s['conditions'])\"");
@@ -300,13 +276,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_keeps_to_its_size),
         cmocka_unit_test(a_size_that_is_none_is_refused),
-        cmocka_unit_test(the_report_leads_to_the_page),
         cmocka_unit_test(fewer_frames_have_the_peak_and_the_ends),
         cmocka_unit_test(a_run_without_frames_has_no_page),
         cmocka_unit_test(a_page_without_its_template_is_a_warning),
-        cmocka_unit_test(words_about_the_test_stand_in_report_and_summary),
+        cmocka_unit_test(words_about_the_test_stand_in_the_summary),
         cmocka_unit_test(words_that_break_a_line_are_refused),
-        cmocka_unit_test(the_report_prints_on_two_pages),
         cmocka_unit_test(a_quarter_works_on_a_desktop_and_a_phone),
         cmocka_unit_test(a_compression_test_works),
         cmocka_unit_test(a_skin_alone_works),

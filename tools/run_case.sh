@@ -4,8 +4,8 @@
 #
 #     tools/run_case.sh CASE DIR [OPTION OF softfall-pre, e.g. --set missile.velocity="5.2 m/s"]...
 #
-# Writes model.h5, results.h5, the output of softfall-post and its printed lines (report.txt) into DIR. The programs are
-# those in build/bin, or in $SF_BIN_DIR.
+# Writes model.h5, results.h5, the output of softfall-post, its printed lines (report.txt) and, where the Python package can run, the page
+# report.html into DIR. The programs are those in build/bin, or in $SF_BIN_DIR.
 set -euo pipefail
 
 # Waiting threads do not spin: with spinning, a drop beside other busy programs took six times as long.
@@ -29,4 +29,8 @@ echo
 "$bin/softfall-solve" "$dir/model.h5" -o "$dir/results.h5" --force
 echo
 "$bin/softfall-post" "$dir/results.h5" -o "$dir" --force | tee "$dir/report.part"
+if [ ! -x "$bin/softfall" ] || ! "$bin/softfall" report "$dir" 2>"$dir/report.part.log"; then
+    echo "No report.html: $(cat "$dir/report.part.log" 2>/dev/null || echo "there is no $bin/softfall")"
+fi
+rm -f "$dir/report.part.log"
 mv "$dir/report.part" "$dir/report.txt"

@@ -26,6 +26,7 @@ COMMANDS = {  # module within the package, and what the command does
     "open": ("open_command", "open the workbench in the browser: form, live sliders, curves, the drop in 3-D"),
     "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
     "read": ("read_program", "turn any laboratory's file into the CSV that the programs read, and say how it was read"),
+    "report": ("report_command", "make the page of a drop from the files of softfall-post"),
     "rows": ("rows_command", "simulate a block of rows of a sweep, as an engine (Snakemake, Slurm) starts it"),
     "run": ("run_command", "run a drop: mesh, solution, figures and report, kept by content"),
     "sweep": ("sweep_command", "run many drops by a plan: effects, response surface, probabilities"),
@@ -35,7 +36,7 @@ PROGRAMS = {  # words that are handed over to the program softfall-WORD, and wha
     "batch": "run a group of a batch, as an engine (Snakemake, Slurm) starts it",
     "fit": "identify a foam from compression tests or from drops",
     "new": "make a folder with a case that runs as it stands",
-    "post": "compute figures, curves and pages from results.h5",
+    "post": "compute figures and curves from results.h5",
     "pre": "build the model of a drop from a case",
     "solve": "simulate the drop of a model",
 }

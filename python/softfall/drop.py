@@ -274,7 +274,7 @@ class Drop:
         bounds = {limit["key"]: limit["bound"] for limit in kept["verdict"]["limits"]}
         usual = kept["cfc"] == 1000 and "reference" not in kept and "," not in kept["acceleration"] and set(bounds.values()) <= {200, 1000}
         newer = (self._home or Path()).joinpath("summary.json").stat().st_mtime_ns > self.results.stat().st_mtime_ns
-        whole = all((self._home or Path()).joinpath(name).exists() for name in ("report.html", "acceleration.csv"))
+        whole = (self._home or Path()).joinpath("compression.csv" if kept["prescribed_motion"] else "acceleration.csv").exists() and "command_line" in kept
         return usual and whole and newer and kept["program"].split()[-1] == library.version().split()[0]
 
     @property
@@ -291,7 +291,7 @@ class Drop:
     def figures(self) -> Figures:
         """a_max_g, hic and all other figures of summary.json."""
         entries = {key: math.nan if value is None else value for key, value in self.summary.items()
-                   if key not in ("program", "results", "caution", "acceleration") and not isinstance(value, (list, dict))}
+                   if key not in ("program", "git_revision", "command_line", "results", "caution", "acceleration") and not isinstance(value, (list, dict))}
         return Figures(entries)
 
     @property
@@ -353,8 +353,10 @@ class Drop:
         return path
 
     def report(self) -> Path:
-        """Returns the path of report.html, two pages to read or print; of `read_results` without `output` it lasts as the Drop."""
-        return self.file("report.html")
+        """Makes report.html, two pages to read or print, unless it is there, and returns its path; of `read_results` without `output` it lasts as the Drop."""
+        from . import report
+        self.summary
+        return report.current(self._shown or Path(), self)
 
     def curve(self) -> tuple[Column, Column]:
         """Returns time (s) and deceleration (g) of the filtered curve, whose a_max and HIC the figures are."""

@@ -135,7 +135,7 @@ def _finish(drop: Drop, progress: DropProgress | None, runs: Path, bar: Bar) -> 
         if progress:
             progress.figures()
         for each in drop.series:
-            each.summary
+            each.report()
         _link(drop, runs)
     bar.clear()
 

@@ -54,14 +54,6 @@ double sf_history_resultant(const sf_history *h, int64_t row) {
     return sqrt(x * x + y * y + z * z);
 }
 
-int64_t sf_history_row_of_sustained(const sf_history *h, const double *column) {
-    int64_t row = 0;
-    for (int64_t i = 1; i < h->rows; i++)
-        if (sf_history_sustained(column, i) > sf_history_sustained(column, row))
-            row = i;
-    return row;
-}
-
 static double internal_energy(const sf_history *h, int64_t i) {
     return h->energy_stored[i] + h->energy_hysteresis[i] + h->energy_viscous[i] + h->energy_stabilisation[i];
 }

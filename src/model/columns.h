@@ -163,8 +163,6 @@ double sf_history_largest(const sf_history *history, const double *column);
 /* The value that a column keeps up over three rows: the least of this row and the two before it, 0 before the
  * first row. An impulse of one or two time steps, as of a flat missile at first contact, does not show. */
 double sf_history_sustained(const double *column, int64_t row);
-/* First row of the largest such value; 0 without rows. */
-int64_t sf_history_row_of_sustained(const sf_history *history, const double *column);
 
 /* |specific force| on the missile's centre in a row, m s-2. */
 double sf_history_resultant(const sf_history *history, int64_t row);

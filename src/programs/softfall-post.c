@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* softfall-post RESULTS -o DIR: injury figures, curves, pictures and ParaView files from a results.h5. */
+/* softfall-post RESULTS -o DIR: injury figures, curves and ParaView files from a results.h5. */
 #include "base/program.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -8,8 +8,6 @@
 #include "post/view/csv.h"
 #include "post/view/overlay.h"
 #include "post/view/paraview.h"
-#include "post/view/plot.h"
-#include "post/view/report.h"
 
 #include <assert.h>
 #include <string.h>
@@ -41,7 +39,7 @@ typedef struct job {
     char data[SF_XDMF_NAME_SIZE]; /* of the data of pad.xdmf */
     char *command_line;
     sf_xdmf xdmf;
-    char plot_warning[512], state_warning[512], view_warning[512];
+    char state_warning[512], view_warning[512];
 } job;
 
 /* ---- the command line ---- */
@@ -110,7 +108,7 @@ static const sf_option list[] = {
      "data of pad.xdmf as doubles, as in results.h5 (default: as floats, a third of the bytes)",
      .member = AT(full)},
     {"film", 0, "mp4|gif",
-     "a film of the drop too, pad.mp4 or pad.gif, and pad.png, the picture at the peak, which report.html then "
+     "a film of the drop too, pad.mp4 or pad.gif, and pad.png, the picture at the peak, which the report then "
      "shows; by pvbatch (ParaView) and ffmpeg",
      .member = AT(film), .read = read_film, .is_optional = true},
     {"view", 0, "MB",
@@ -189,9 +187,9 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
         .program = "softfall-post",
         .operands = "RESULTS.h5 -o DIR\ncompare RESULTS RESULTS ... -o DIR\nseries RESULTS -o DIR",
         .meaning =
-            "Injury figures, curves and ParaView files of a softfall drop.\vWrites report.html, view.html, summary.json, "
-            "history.csv, section.csv, acceleration.png (and .gp), pad.xdmf and its data pad-....h5. Of a prescribed "
-            "motion compression.csv and .png instead of the acceleration. Open the drop in ParaView with paraview "
+            "Injury figures, curves and ParaView files of a softfall drop.\vWrites view.html, summary.json, "
+            "acceleration.csv, history.csv, section.csv, pad.xdmf and its data pad-....h5. Of a prescribed motion "
+            "compression.csv instead of acceleration.csv. `softfall report DIR' makes a page of them. Open the drop in ParaView with paraview "
             "--script=pad_paraview.py, in that directory. The "
             "figures are indicative, not a certification.",
         .second = "expected one results file, found \"%s\" as well",
@@ -211,8 +209,9 @@ static sf_status parse_command(int argc, char **argv, options *o, sf_error *err)
 
 /* ---- the output ---- */
 
-/* Every file that this program may write. The data of pad.xdmf are moved before it, and earlier ones (pad.h5
- * of earlier versions) removed after it. Without a name of the data yet, pad.xdmf stands for them. */
+/* Every file that this program may write, and those that `softfall report' and earlier versions make of
+ * them, which do not outlive what they show. The data of pad.xdmf are moved before it, and earlier ones
+ * (pad.h5 of earlier versions) removed after it. Without a name of the data yet, pad.xdmf stands for them. */
 static void name_output(job *j) {
     /* clang-format off */
     const char *const names[] = {
@@ -242,15 +241,13 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
         sf_xdmf_write(&j->output, &j->results, &xdmf, j->data, &j->xdmf, err) != SF_OK ||
         sf_paraview_write(&j->output, &j->results, &j->xdmf, j->state_warning, sizeof j->state_warning,
                           err) != SF_OK ||
-        (o->film && sf_paraview_film(&j->output, o->film, err) != SF_OK) ||
-        sf_plot_write(&j->output, &summary, j->plot_warning, sizeof j->plot_warning, err) != SF_OK)
+        (o->film && sf_paraview_film(&j->output, o->film, err) != SF_OK))
         return err->status;
     if (!section)
         fprintf(stderr,
                 "softfall-post: warning: no frame holds the von Mises stress at the peak: no section.csv\n");
     SF_TRY(sf_browser_write(&j->output, &summary, &j->xdmf, o->view, j->view_warning, sizeof j->view_warning,
                             err));
-    SF_TRY(sf_report_write(&j->output, &summary, err));
     SF_TRY(sf_summary_write(&j->output, &summary, err));
     SF_TRY(sf_staging_commit(&j->output, err));
     sf_xdmf_remove_old(o->directory, j->data);
@@ -259,7 +256,7 @@ static sf_status write_output(const options *o, job *j, sf_error *err) {
 }
 
 static void print_warnings(const job *j) {
-    const char *const warnings[] = {j->plot_warning, j->state_warning, j->view_warning};
+    const char *const warnings[] = {j->state_warning, j->view_warning};
     const sf_sink sink = sf_program_sink("softfall-post");
     fflush(stdout);
     for (int k = 0; k < j->results.note_count; k++)
@@ -268,7 +265,7 @@ static void print_warnings(const job *j) {
         sf_sink_tell(&sink, SF_WARNING, "the missile never touched the pad: there are no injury figures");
     else if (!j->figures.rebounded && !j->figures.driven)
         sf_sink_tell(&sink, SF_WARNING, "the run ended in contact: no rebound speed, the peak may lie ahead");
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 2; k++)
         if (*warnings[k])
             sf_sink_tell(&sink, SF_WARNING, "%s", warnings[k]);
 }
@@ -277,13 +274,10 @@ static void print_files(const job *j) {
     static const struct {
         const char *name, *meaning;
     } files[] = {
-        {"report.html", "a page to read or print, usually two sides of A4"},
         {"view.html", "the drop to turn, cut and play in a browser"},
         {"summary.json", "the figures"},
-        {"acceleration.png", "the curves and the HIC window"},
         {"acceleration.csv", "the filtered curve of a_max and HIC, from 5 ms before contact"},
         {"history.csv", "acceleration, speed, indentation, forces, energies over time"},
-        {"compression.png", "stress over strain"},
         {"compression.csv", "strain and nominal stress over time"},
         {"section.csv", "mid-section and profile under the axis at the peak"},
         {"reference.csv", "the measured curve, aligned"},
@@ -297,6 +291,7 @@ static void print_files(const job *j) {
     for (size_t k = 0; k < sizeof files / sizeof files[0]; k++)
         if (sf_staging_has(&j->output, files[k].name))
             printf("  %s/%-18s %s\n", j->output.directory, files[k].name, files[k].meaning);
+    printf("A page of them, to read or print: softfall report %s\n", j->output.directory);
 }
 
 static sf_status run(const options *o, job *j, sf_error *err) {
@@ -321,6 +316,8 @@ static sf_status run(const options *o, job *j, sf_error *err) {
     if (o->comparing && sf_compare_run(&compare, &j->figures.filtered, &j->comparison, err) != SF_OK)
         return err->status;
     sf_verdict_compute(&j->results, &j->figures, &o->limits, &j->verdict);
+    if (o->comparing)
+        sf_comparison_judge(&j->comparison, j->figures.injury.hic.value, j->verdict.grade);
     SF_TRY(write_output(o, j, err));
     print_files(j);
     print_warnings(j);

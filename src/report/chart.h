@@ -133,10 +133,6 @@ char *sf_chart_svg(const sf_staging *output, const char *name, const char *progr
 void sf_chart_figure(FILE *page, const sf_staging *output, const char *name, const char *program,
                      const char *caption);
 
-/* The same of a chart that is for a page only: no NAME.gp and no NAME.png stay. */
-char *sf_chart_page(const sf_chart *chart, const sf_staging *output, const char *program, char *warning,
-                    size_t size, sf_error *err);
-
 /* The SVG element of a file of gnuplot's terminal: no prologue and no titles, every id with NAME before it;
  * NULL if the text holds none, or out of memory. */
 char *sf_gnuplot_element(const char *text, const char *name);

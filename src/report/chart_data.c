@@ -273,14 +273,3 @@ sf_status sf_chart_write(sf_chart *chart, const sf_staging *output, char *warnin
     sf_chart_free(chart);
     return err->status;
 }
-
-char *sf_chart_page(const sf_chart *chart, const sf_staging *output, const char *program, char *warning,
-                    size_t size, sf_error *err) {
-    warning[0] = '\0';
-    if (!chart || sf_chart_script(chart, output, err) != SF_OK)
-        return NULL;
-    char *svg = sf_chart_svg(output, chart->name, program, warning, size);
-    SF_PRINTED(script, NAME_SIZE, "%s.gp", chart->name);
-    sf_staging_remove(output, script);
-    return svg;
-}

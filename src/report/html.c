@@ -2,7 +2,6 @@
 #include "report/html.h"
 
 #include "base/text.h"
-#include "io/plain_file.h"
 #include "report_style.h"
 #include <ctype.h>
 #include <math.h>
@@ -149,37 +148,6 @@ void sf_html_base64(FILE *out, const unsigned char *data, size_t size) {
     }
 }
 
-/* Four bytes of a PNG's header, which begins with signature, length and name of its first part. */
-static unsigned png_number(const unsigned char *at) {
-    return (unsigned)at[0] << 24 | (unsigned)at[1] << 16 | (unsigned)at[2] << 8 | (unsigned)at[3];
-}
-
-static char *png_element(const unsigned char *data, size_t size) {
-    enum { WIDTH = 16, HEIGHT = 20, HEADER = 24 };
-    char *element = NULL;
-    size_t length = 0;
-    FILE *out = size > HEADER ? open_memstream(&element, &length) : NULL;
-    if (!out)
-        return NULL;
-    unsigned width = png_number(data + WIDTH), height = png_number(data + HEIGHT);
-    fprintf(out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %u %u\"><image width=\"%u\" "
-            "height=\"%u\" href=\"data:image/png;base64,",
-            width, height, width, height);
-    sf_html_base64(out, data, size);
-    fputs("\"/></svg>\n", out);
-    return sf_text_close(out, &element);
-}
-
-char *sf_html_png(const sf_staging *output, const char *name) {
-    sf_error ignored = SF_ERROR_INIT;
-    SF_OWNED char *data = NULL, *path = sf_staging_path(output, name, &ignored);
-    size_t size = 0;
-    bool is_read = path && sf_staging_has(output, name) &&
-                   sf_plain_read(path, NULL, SF_PLAIN_TEXT, &data, &size, &ignored) == SF_OK;
-    return is_read ? png_element((const unsigned char *)data, size) : NULL;
-}
-
 sf_html_table sf_html_table_begin(FILE *page, const char *columns) {
     sf_html_table table = {.page = page};
     fputs("<table class=\"dense\">", page);
@@ -206,16 +174,8 @@ void sf_html_row(sf_html_table *table) {
     table->column = 0;
 }
 
-void sf_html_hint(sf_html_table *table, const char *text) {
-    table->hint = text;
-}
-
 static void begin_cell(sf_html_table *table) {
-    fputs(table->right >> table->column & 1 ? "<td class=\"r\"" : "<td", table->page);
-    if (table->hint)
-        put_between(table->page, " title=\"", table->hint, "\"");
-    fputc('>', table->page);
-    table->hint = NULL;
+    fputs(table->right >> table->column & 1 ? "<td class=\"r\">" : "<td>", table->page);
     table->column++;
 }
 

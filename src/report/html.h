@@ -47,16 +47,11 @@ void sf_html_figure(FILE *page, const char *svg, const char *format, ...)
 /* The bytes in base64, as an URL or a script takes them. */
 void sf_html_base64(FILE *out, const unsigned char *data, size_t size);
 
-/* The PNG of a file of the staging directory as an SVG element that holds it, for sf_html_figure. From
- * malloc, owned by the caller; NULL if there is none. */
-char *sf_html_png(const sf_staging *output, const char *name);
-
 /* A table; released by nothing. */
 typedef struct sf_html_table {
     FILE *page;
-    unsigned right;   /* bits of the columns of numbers */
-    int column;       /* of the next cell */
-    const char *hint; /* of the next cell; NULL: none */
+    unsigned right; /* bits of the columns of numbers */
+    int column;     /* of the next cell */
 } sf_html_table;
 
 /* `columns`: the headings between '|'; one that begins with '>' is of numbers, set right. NULL: no headings,
@@ -66,8 +61,6 @@ void sf_html_row(sf_html_table *table);
 void sf_html_cell(sf_html_table *table, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A row, and its first cell. */
 #define SF_HTML_ROW(table, ...) (sf_html_row(table), sf_html_cell(table, __VA_ARGS__))
-/* The next cell has this as its hint. */
-void sf_html_hint(sf_html_table *table, const char *text);
 /* A row: a cell of text, and cells of numbers and words of ours between '|' in the format; NULL: these alone,
  * in the row that is open. A cell that begins with a number that is not finite is a dash. */
 void sf_html_line(sf_html_table *table, const char *first, const char *format, ...)

@@ -236,6 +236,44 @@ sf_status sf_compare_run(const sf_compare_options *options, const sf_series *mod
     return err->status;
 }
 
+/* "3.1 % above the measured HIC" */
+static void put_error(char *text, size_t size, double error, const char *name) {
+    if (isfinite(error))
+        sf_text_add(text, size, "%.*f %% %s the measured %s", fabs(error) < 0.0995 ? 1 : 0, 100 * fabs(error),
+                    error < 0 ? "below" : "above", name);
+    else
+        sf_text_add(text, size, "%s not comparable", name);
+}
+
+void sf_comparison_judge(sf_comparison *c, double model_hic, sf_grade run) {
+    double r2 = c->fits[0].r2;
+    c->hic_error = c->injury.hic.value > 0 ? model_hic / c->injury.hic.value - 1 : NAN;
+    const char *obstacle = NULL;
+    if (run == SF_GRADE_DO_NOT_USE)
+        obstacle = "the figures of the run are not to be used";
+    else if (c->measured.record.grade == SF_GRADE_DO_NOT_USE)
+        obstacle = "the record is not to be used";
+    else if (!isfinite(c->peak_error + c->hic_error + r2))
+        obstacle = "not all of it is defined";
+    bool agrees = !obstacle && fabs(c->peak_error) <= SF_AGREE_A_MAX && fabs(c->hic_error) <= SF_AGREE_HIC &&
+                  r2 >= SF_AGREE_R2;
+    c->agreement = obstacle ? "not judged" : "does not agree";
+    if (agrees)
+        c->agreement = "agrees";
+    snprintf(c->finding, sizeof c->finding, "model ");
+    put_error(c->finding, sizeof c->finding, c->peak_error, "a_max");
+    sf_text_add(c->finding, sizeof c->finding, ", ");
+    put_error(c->finding, sizeof c->finding, c->hic_error, "HIC");
+    if (isfinite(r2))
+        sf_text_add(c->finding, sizeof c->finding, ", R² %.2f", r2);
+    if (obstacle)
+        sf_text_add(c->finding, sizeof c->finding, ": %s, as %s", c->agreement, obstacle);
+    else
+        sf_text_add(c->finding, sizeof c->finding,
+                    ": %s (bounds: a_max within %g %%, HIC within %g %%, R² at least %g)", c->agreement,
+                    100 * SF_AGREE_A_MAX, 100 * SF_AGREE_HIC, SF_AGREE_R2);
+}
+
 void sf_comparison_free(sf_comparison *comparison) {
     sf_reference_free(&comparison->measured);
     SF_CLEAR(comparison, comparison->fits);

@@ -49,6 +49,9 @@ typedef struct sf_comparison {
     double shift;          /* s, as used */
     int shift_given;       /* 1 if the caller gave it */
     double peak_error;     /* model a_max / measured a_max - 1 */
+    double hic_error;      /* the same of HIC; NaN if the measured one is 0 */
+    const char *agreement; /* "agrees", "does not agree" or "not judged"; static */
+    char finding[320]; /* a sentence with the errors, the agreement and its bounds, or why it is not judged */
     int64_t fit_count;
     sf_fit *fits; /* [fit_count]: for the window, then each region: at 0.25 and at 0.50 ms; owned */
 } sf_comparison;
@@ -83,4 +86,12 @@ sf_status sf_compare_fit(const sf_series *measured, const sf_series *model, cons
 /* Reads the measured curve and compares `model` (s, g) with it. Release with sf_comparison_free. */
 sf_status sf_compare_run(const sf_compare_options *options, const sf_series *model, sf_comparison *comparison,
                          sf_error *err);
+
+/* Judges whether the model agrees with the measurement: a_max within SF_AGREE_A_MAX, HIC within SF_AGREE_HIC
+ * and R2 of the first fit at least SF_AGREE_R2. Curves are not judged if the record or the run, whose grade
+ * is `run`, is not to be used, nor if one of the three is not defined. */
+#define SF_AGREE_A_MAX 0.1
+#define SF_AGREE_HIC 0.2
+#define SF_AGREE_R2 0.9
+void sf_comparison_judge(sf_comparison *comparison, double model_hic, sf_grade run);
 void sf_comparison_free(sf_comparison *comparison);

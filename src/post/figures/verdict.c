@@ -98,7 +98,8 @@ void sf_check_judge(sf_check *c, bool percent) {
              refused ? "not to be used beyond" : "good up to", bound);
 }
 
-bool sf_check_is_flag(const sf_check *check) {
+/* True of a check that says yes or no: a sentence shows no numbers of it. */
+static bool is_flag(const sf_check *check) {
     return check->key == sf_good_run_rule_get(SF_CHECK_step_artefact)->key;
 }
 
@@ -138,7 +139,7 @@ static void describe(const sf_results *r, const sf_figures *f, sf_check *c) {
                  "edge and scatter: not estimated of a free missile, as the estimate knows no rotation");
     else if (isnan(c->value))
         snprintf(c->text, sizeof c->text, "%s: not defined by this run", c->title);
-    else if (sf_check_is_flag(c))
+    else if (is_flag(c))
         snprintf(c->text, sizeof c->text, "the raw peak is %s",
                  c->value > 0 ? "one or two time steps long" : "longer than two time steps");
     if (c->grade != SF_GRADE_VALID && c->key == sf_good_run_rule_get(SF_CHECK_rim)->key)

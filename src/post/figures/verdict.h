@@ -69,8 +69,5 @@ void sf_verdict_compute(const sf_results *results, const sf_figures *figures, co
 /* Bytes that hold every line of sf_verdict_line. */
 enum { SF_VERDICT_LINE_SIZE = 1280 };
 
-/* True of a check that says yes or no: a sentence or a table shows no numbers of it. */
-bool sf_check_is_flag(const sf_check *check);
-
 /* The line of its rows, with three findings. */
 void sf_verdict_line(const sf_verdict *verdict, char *text, size_t size);

@@ -2,13 +2,13 @@
 #include "post/view/browser.h"
 
 #include "post/view/paraview.h"
-#include "post/view/report.h"
 
 #include <float.h>
 
 #include "build_info.h"
 #include "model/model.h"
-#include "post/view/cut.h"
+#include "model/cells.h"
+#include "post/view/axis.h"
 
 static const char PAGE[] = "view.html", FACTS[] = "id=\"drop\">{}";
 
@@ -29,6 +29,13 @@ static const struct {
                   {SF_FRAME_LARGEST_COMPRESSION, 100, "compression", "%", false},
                   {SF_FRAME_CONTACT_PRESSURE, 1e-3, "contact pressure", "kPa", false}};
 enum { COLOURINGS = sizeof colourings / sizeof colourings[0] };
+
+/* The colours of the scale, red, green and blue, from its low to its high end; those between are linear. */
+enum { COLOURS = 8 };
+static const unsigned char scale_colours[COLOURS][3] = {{238, 240, 236}, {176, 208, 228}, {84, 150, 200},
+                                                        {62, 165, 140},  {236, 212, 84},  {240, 138, 52},
+                                                        {196, 36, 40},   {96, 0, 30}};
+static const double DECADES = 2.5; /* of the logarithmic scale */
 
 /* The page, and what is shown on it. */
 typedef struct page {
@@ -146,15 +153,31 @@ static void put_indices(page *p, const char *key, const int32_t *index, int64_t 
 
 /* ---- the parts of the facts ---- */
 
+static void name_drop(const sf_results *r, char *title, size_t size) {
+    if (r->driven)
+        snprintf(title, size, "Compression of a foam specimen of %.4g mm", r->thickness * 1e3);
+    else
+        snprintf(title, size, "Drop of %.4g kg at %.4g m/s on a foam pad of %.4g mm", r->missile_mass,
+                 r->missile_speed, r->thickness * 1e3);
+}
+
+/* Says why the verdict is not "valid". `line` has SF_VERDICT_LINE_SIZE bytes. */
+static const char *find_findings(const sf_verdict *verdict, char *line, size_t size) {
+    sf_verdict_line(verdict, line, size);
+    const char *findings = strstr(line, ": ");
+    return findings ? findings + 2 : "Every check of the run is within its bounds";
+}
+
 static void put_texts(page *p) {
+    static const char *const kinds[] = {"good", "fair", "bad"}; /* by grade */
     const sf_verdict *verdict = p->summary->verdict;
-    char title[SF_REPORT_TITLE_SIZE], line[SF_VERDICT_LINE_SIZE], foot[320];
-    sf_report_title(p->results, title, sizeof title);
+    char title[160], line[SF_VERDICT_LINE_SIZE], foot[320];
+    name_drop(p->results, title, sizeof title);
     snprintf(foot, sizeof foot, "softfall-post %s (%s), from %.160s; drawn by WebGL 2, without a library",
              SF_VERSION, SF_GIT_REVISION, p->summary->results_path);
     SF_JSON_TEXTS(&p->json, {"title", title}, {"verdict", sf_verdict_phrase(verdict->grade)},
-                  {"kind", sf_report_kind(verdict->grade)},
-                  {"findings", sf_report_findings(verdict, line, sizeof line)}, {"foot", foot});
+                  {"kind", kinds[verdict->grade]}, {"findings", find_findings(verdict, line, sizeof line)},
+                  {"foot", foot});
 }
 
 static void put_notes(page *p, bool planes_known) {
@@ -184,11 +207,11 @@ static void put_notes(page *p, bool planes_known) {
 }
 
 static void put_scale(page *p) {
-    double colours[3 * SF_PICTURE_COLOURS];
-    for (int k = 0; k < 3 * SF_PICTURE_COLOURS; k++)
-        colours[k] = sf_picture_colours[k / 3][k % 3];
-    put_numbers(p, "colours", colours, 3 * SF_PICTURE_COLOURS, 1);
-    sf_json_number(&p->json, "decades", sf_picture_decades);
+    double colours[3 * COLOURS];
+    for (int k = 0; k < 3 * COLOURS; k++)
+        colours[k] = scale_colours[k / 3][k % 3];
+    put_numbers(p, "colours", colours, 3 * COLOURS, 1);
+    sf_json_number(&p->json, "decades", DECADES);
     SF_JSON_ARRAY(&p->json, "fields");
     for (int k = 0; k < COLOURINGS; k++) {
         if (!(p->made->fields >> colourings[k].field & 1))

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "post/view/csv.h"
 
-#include "post/view/cut.h"
+#include "model/cells.h"
+#include "post/view/axis.h"
 
 sf_status sf_csv_write_history(const sf_staging *output, const sf_results *results, const sf_figures *figures,
                                sf_error *err) {
@@ -66,6 +67,17 @@ sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *
     return sf_csv_close(&csv, err);
 }
 
+/* ---- the mid-section ---- */
+
+enum { STATIONS = 41 }; /* points under the axis */
+
+/* A point of the section: the mean of up to 4 nodes with barycentric weights. */
+typedef struct section_point {
+    int32_t node[4];
+    double weight[4];
+    double fit; /* smallest weight: 0 or more inside the tetrahedron, the best so far while searching */
+} section_point;
+
 /* Barycentric weights of `x` in the tetrahedron; false if that is flat. */
 static bool tetrahedron_weights(const double *const p[4], const double x[3], double weight[4]) {
     double e[3][3], b[3], size = 0;
@@ -87,7 +99,7 @@ static bool tetrahedron_weights(const double *const p[4], const double x[3], dou
 }
 
 static void offer_tetrahedron(const sf_results *r, const int32_t *cell, const int corner[4],
-                              const double x[3], sf_section_point *point) {
+                              const double x[3], section_point *point) {
     const double *p[4];
     double weight[4];
     for (int k = 0; k < 4; k++)
@@ -106,9 +118,9 @@ static void offer_tetrahedron(const sf_results *r, const int32_t *cell, const in
 
 /* Finds the tetrahedron of each station under the axis; those in no cell keep a negative fit. */
 static void locate_stations(const sf_results *r, const double axis[2], double bottom, double top,
-                            sf_section_point *station) {
-    for (int s = 0; s < SF_SECTION_STATIONS; s++)
-        station[s] = (sf_section_point){.fit = -INFINITY};
+                            section_point *station) {
+    for (int s = 0; s < STATIONS; s++)
+        station[s] = (section_point){.fit = -INFINITY};
     for (int64_t c = 0; c < r->cell_count; c++) {
         const int32_t *cell = &r->cell_node[r->cell_ptr[c]];
         double low[3], high[3];
@@ -120,8 +132,8 @@ static void locate_stations(const sf_results *r, const double axis[2], double bo
             axis[1] > high[1] + slack)
             continue;
         const sf_cell_shape *shape = sf_cell_shape_of(r->cell_type[c]);
-        for (int s = 0; s < SF_SECTION_STATIONS; s++) {
-            double z = top + (bottom - top) * s / (SF_SECTION_STATIONS - 1);
+        for (int s = 0; s < STATIONS; s++) {
+            double z = top + (bottom - top) * s / (STATIONS - 1);
             const double x[3] = {axis[0], axis[1], z};
             for (int t = 0; t < shape->tetrahedra && z >= low[2] - slack && z <= high[2] + slack; t++)
                 offer_tetrahedron(r, cell, shape->tetrahedron[t], x, &station[s]);
@@ -129,7 +141,8 @@ static void locate_stations(const sf_results *r, const double axis[2], double bo
     }
 }
 
-double sf_section_stations(const sf_results *r, sf_section_point station[SF_SECTION_STATIONS]) {
+/* Finds the points under the axis, top to bottom, evenly spaced; returns the height of the top (m). */
+static double find_stations(const sf_results *r, section_point station[STATIONS]) {
     double axis[2], low[3], high[3];
     sf_box3(r->node_count, r->position, low, high);
     sf_axis_find(r, axis);
@@ -137,11 +150,13 @@ double sf_section_stations(const sf_results *r, sf_section_point station[SF_SECT
     return high[2];
 }
 
-bool sf_section_inside(const sf_section_point *point) {
+/* True if the point lies in a cell; otherwise its mean has no meaning. */
+static bool is_inside(const section_point *point) {
     return point->fit >= -1e-6;
 }
 
-double sf_section_mean(const double *field, int components, int component, const sf_section_point *point) {
+/* Returns a component of a field ([node_count][components]) there. */
+static double mean_at(const double *field, int components, int component, const section_point *point) {
     double sum = 0;
     for (int k = 0; k < 4; k++)
         sum += point->weight[k] * field[components * (int64_t)point->node[k] + component];
@@ -150,15 +165,15 @@ double sf_section_mean(const double *field, int components, int component, const
 
 /* Means of `count` components from `first` on; empty cells if there is no such field. */
 static void put_means(sf_csv *csv, double factor, const double *field, int components, int first, int count,
-                      const sf_section_point *p) {
+                      const section_point *p) {
     for (int k = first; k < first + count; k++)
-        SF_CSV_NUMBERS(csv, field ? factor * sf_section_mean(field, components, k, p) : NAN);
+        SF_CSV_NUMBERS(csv, field ? factor * mean_at(field, components, k, p) : NAN);
 }
 
 static void put_point(sf_csv *csv, const sf_results *r, const sf_frame *frame, double top,
-                      const sf_section_point *p) {
+                      const section_point *p) {
     put_means(csv, 1e3, r->position, 3, 0, 3, p);
-    SF_CSV_NUMBERS(csv, 1e3 * (top - sf_section_mean(r->position, 3, 2, p)));
+    SF_CSV_NUMBERS(csv, 1e3 * (top - mean_at(r->position, 3, 2, p)));
     put_means(csv, 1e3, frame->field[SF_FRAME_DISPLACEMENT], 3, 0, 3, p);
     put_means(csv, 1e-3, frame->field[SF_FRAME_VON_MISES], 1, 0, 1, p);
     put_means(csv, 1e-3, frame->field[SF_FRAME_CAUCHY_STRESS], 9, 8, 1, p);
@@ -177,12 +192,12 @@ static int by_depth(const void *a, const void *b, void *positions) {
 
 static sf_status write_rows(sf_csv *csv, const sf_results *r, const sf_frame *frame, sf_error *err) {
     double axis[2], top;
-    sf_section_point station[SF_SECTION_STATIONS];
+    section_point station[STATIONS];
     SF_OWNED int32_t *nodes = sf_alloc(err, r->node_count, sizeof *nodes, "the nodes of the section");
     size_t count = 0;
     SF_TRY(err->status);
     sf_axis_find(r, axis);
-    top = sf_section_stations(r, station);
+    top = find_stations(r, station);
     for (int64_t i = 0; i < r->node_count; i++) {
         double off = fabs(r->position[3 * i + 1] - axis[1]);
         if (r->axisymmetric ? off == 0 : off < 0.499 * cbrt(r->volume[i])) /* the section itself */
@@ -190,12 +205,12 @@ static sf_status write_rows(sf_csv *csv, const sf_results *r, const sf_frame *fr
     }
     qsort_r(nodes, count, sizeof *nodes, by_depth, r->position);
     for (size_t i = 0; i < count; i++) {
-        sf_section_point point = {.node = {nodes[i]}, .weight = {1}};
+        section_point point = {.node = {nodes[i]}, .weight = {1}};
         sf_csv_print(csv, "section,%d", r->axisymmetric ? r->revolution.node[nodes[i]] : nodes[i]);
         put_point(csv, r, frame, top, &point);
     }
-    for (int s = 0; s < SF_SECTION_STATIONS; s++) {
-        if (!sf_section_inside(&station[s]))
+    for (int s = 0; s < STATIONS; s++) {
+        if (!is_inside(&station[s]))
             continue;
         sf_csv_print(csv, "axis,");
         put_point(csv, r, frame, top, &station[s]);

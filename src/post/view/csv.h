@@ -26,22 +26,6 @@ sf_status sf_csv_write_reference(const sf_staging *output, const sf_comparison *
  * spacing of it); rows of the set `axis` are points under the axis, evenly spaced through the thickness,
  * interpolated linearly in the cells. */
 
-enum { SF_SECTION_STATIONS = 41 }; /* points under the axis */
-
-/* A point of the section: the mean of up to 4 nodes with barycentric weights. */
-typedef struct sf_section_point {
-    int32_t node[4];
-    double weight[4];
-    double fit; /* smallest weight: 0 or more inside the tetrahedron, the best so far while searching */
-} sf_section_point;
-
-/* The points under the axis, top to bottom, evenly spaced; returns the height of the top (m). */
-double sf_section_stations(const sf_results *results, sf_section_point station[SF_SECTION_STATIONS]);
-/* True if the point lies in a cell; otherwise its mean has no meaning. */
-bool sf_section_inside(const sf_section_point *point);
-/* A component of a field ([node_count][components]) there. */
-double sf_section_mean(const double *field, int components, int component, const sf_section_point *point);
-
 /* Writes the section of /peak, or without it of the frame of the largest acceleration. `*written` is false
  * if that holds no von Mises stress: then there is no file. */
 sf_status sf_section_write(const sf_staging *output, const sf_results *results, bool *written, sf_error *err);

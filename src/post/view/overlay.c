@@ -2,15 +2,13 @@
 #include "post/view/overlay.h"
 
 #include "io/h5_data.h"
-#include "post/view/report_picture.h"
-#include "post/view/report.h"
+#include "post/figures/verdict.h"
+#include "post/view/axis.h"
 
 #include "build_info.h"
 #include "base/program.h"
 #include "model/model.h"
 #include "io/plain_file.h"
-#include "report/chart.h"
-#include "post/view/cut.h"
 #include <argp.h>
 #include <sys/stat.h>
 
@@ -40,17 +38,9 @@ typedef struct overlay {
     char *command;
 } overlay;
 
-static const char *const names[] = {"compare.csv", "compare.gp", "compare.png",
-                                    "report.html", "series.csv", NULL};
-static const char *const colours[MOST_RUNS] = {"#08519c", "#cb181d", "#238b45", "#6a51a3",
-                                               "#d94801", "#17becf", "#8c6d31", "#525252",
-                                               "#e7298a", "#66c2a4", "#fdae6b", "#9e9ac8"};
-/* In the page; compare.csv has every figure. */
-/* clang-format off */
-static const char *const listed[] = {
-    "a_max_g", "a_max_time_ms", "hic", "hic_t1_ms", "hic_t2_ms", "v0_m_s", "v_rebound_m_s",
-    "absorbed_energy_fraction", "max_indentation_mm", "max_local_strain", "energy_error", "nodes", "steps"};
-/* clang-format on */
+/* The last are of `softfall report' and of earlier versions: they do not outlive what they show. */
+static const char *const names[] = {"compare.csv", "compare.json", "compare_curves.csv", "series.csv",
+                                    "report.html", "compare.png",  "compare.gp",         NULL};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
     overlay *o = state->input;
@@ -201,51 +191,6 @@ static sf_status write_series(const overlay *o, sf_error *err) {
     return sf_csv_close(&csv, err);
 }
 
-/* The pad before each later drop. */
-static void put_pads(FILE *page, const overlay *o) {
-    for (int k = 1; k < o->count; k++) {
-        sf_report_picture p = {0};
-        sf_report_picture_before(&o->run[k].results, &p, SF_IGNORED);
-        sf_html_figure(page, p.svg, "Drop %d. %s", k + 1, p.text);
-        free(p.svg);
-    }
-}
-
-static void put_series(FILE *page, const overlay *o) {
-    sf_html_heading(page, "Drops of the series");
-    sf_html_table t = sf_html_table_begin(page, NULL);
-    sf_html_line(&t, "drop", "speed (m/s), place (mm)|a_max (g)|over the first|HIC|over the first");
-    bool differ = false; /* in speed, mass or place */
-    for (int k = 0; k <= o->count; k++) {
-        sf_html_row(&t);
-        const overlay_run *r = &o->run[k < o->count ? k : 0];
-        differ = differ || r->figures.v0 != o->run->figures.v0 ||
-                 r->results.missile_mass != o->run->results.missile_mass ||
-                 memcmp(r->place, o->run->place, sizeof r->place) != 0;
-        if (k == o->count) {
-            sf_html_cell(&t, "mean of %d to %d", o->mean[0], o->mean[1]);
-            sf_html_cell(&t, "–");
-        } else {
-            sf_html_cell(&t, "%d", k + 1);
-            sf_html_cell(&t, "%.4g at (%.4g, %.4g)", r->figures.v0, 1e3 * r->place[0], 1e3 * r->place[1]);
-        }
-        for (int f = 0; f < 2; f++) {
-            double value = k == o->count ? series_mean(o, f) : series_number(o, k, f);
-            sf_html_cell(&t, "%.5g", value);
-            sf_html_cell(&t, "%+.1f %%", 100 * (value / series_number(o, 0, f) - 1));
-        }
-    }
-    sf_html_table_end(&t);
-    sf_html_note(
-        page,
-        "series.csv has them too. What a material remembers is as good as its data: see "
-        "material.memory.%s",
-        differ ? " The drops differ in speed, mass or place: what grows over the first is not the foam's "
-                 "softening alone."
-               : "");
-    put_pads(page, o);
-}
-
 static void print_series(const overlay *o) {
     for (int k = 0; k < o->count; k++)
         printf("drop %d: a_max %.1f g (%+.1f %%), HIC %.0f (%+.1f %%)\n", k + 1, series_number(o, k, 0),
@@ -287,74 +232,38 @@ static sf_status write_csv(const overlay *o, sf_error *err) {
 }
 
 /* The filtered curves, their time from first contact. */
-static sf_status write_picture(const overlay *o, char *warning, size_t size, sf_error *err) {
-    sf_chart *chart = sf_chart_new("compare", 1600, 900, err);
-    sf_panel *panel = sf_chart_panel(chart);
-    sf_axis_label(&panel->x, "time from first contact (ms)");
-    sf_axis_label(&panel->y, "deceleration (g)");
-    panel->key = SF_KEY_TOP_RIGHT;
+static sf_status write_curves(const overlay *o, sf_error *err) {
+    SF_CSV_FILE(csv, &o->output, "compare_curves.csv", err);
+    SF_CSV_PRINT_LINE(&csv, "run,time_ms,acceleration_cfc1000_g");
     for (int k = 0; k < o->count; k++) {
         const sf_series *s = &o->run[k].figures.filtered;
         double contact = o->run[k].results.contact_time;
-        sf_series_data *line = sf_chart_series(
-            chart, (sf_series_style){.kind = SF_SERIES_LINE, .colour = colours[k], .width = 2}, "%s",
-            o->run[k].name);
         for (int64_t i = 0; i < s->count; i += s->count / CURVE_POINTS + 1)
             if (s->time[i] >= contact - 2e-3)
-                sf_series_point(line, 1e3 * (s->time[i] - contact), s->value[i]);
+                SF_CSV_LINE(&csv, k + 1, 1e3 * (s->time[i] - contact), s->value[i]);
     }
-    return sf_chart_write(chart, &o->output, warning, size, err);
+    return sf_csv_close(&csv, err);
 }
 
-static void put_table(FILE *page, const overlay *o) {
-    SF_HTML_TABLE t = sf_html_table_begin(page, NULL);
-    SF_HTML_ROW(&t, "run");
-    for (int k = 0; k < o->count; k++)
-        sf_html_cell(&t, "%s", o->run[k].name);
-    SF_HTML_ROW(&t, "verdict");
-    for (int k = 0; k < o->count; k++)
-        sf_html_cell(&t, "%s", sf_verdict_phrase(o->run[k].verdict.grade));
-    for (size_t f = 0; f < sizeof listed / sizeof listed[0]; f++) {
-        SF_HTML_ROW(&t, "%s", listed[f]);
-        for (int k = 0; k < o->count; k++) {
-            double value =
-                sf_figure_number(sf_figure_find(listed[f]), &o->run[k].results, &o->run[k].figures);
-            sf_html_cell(&t, isnan(value) ? "–" : "%.5g", value);
-        }
-    }
-}
-
-static void put_remarks(FILE *page, const overlay *o) {
+/* The runs, and their verdicts. */
+static sf_status write_json(const overlay *o, sf_error *err) {
     char line[SF_VERDICT_LINE_SIZE];
+    SF_JSON_FILE(json, &o->output, "compare.json", err);
+    SF_JSON_TEXTS(&json, {"program", "softfall-post " SF_VERSION}, {"git_revision", SF_GIT_REVISION},
+                  {"command_line", o->command});
+    sf_json_open(&json, "runs", '[');
     for (int k = 0; k < o->count; k++) {
-        if (o->run[k].verdict.grade == SF_GRADE_VALID)
-            continue;
+        SF_JSON_OBJECT(&json, NULL);
         sf_verdict_line(&o->run[k].verdict, line, sizeof line);
-        sf_html_paragraph(page, "%s: %s.", o->run[k].name, line);
+        SF_JSON_TEXTS(&json, {"name", o->run[k].name}, {"results", o->run[k].path},
+                      {"grade", sf_verdict_phrase(o->run[k].verdict.grade)}, {"verdict", line});
     }
-}
-
-static sf_status write_page(const overlay *o, sf_error *err) {
-    sf_grade worst = SF_GRADE_VALID;
-    FILE *page = sf_html_begin(&o->output, "Comparison of runs", NULL, err);
-    SF_TRY(err->status);
-    for (int k = 0; k < o->count; k++)
-        worst = o->run[k].verdict.grade > worst ? o->run[k].verdict.grade : worst;
-    sf_html_banner(page, sf_report_kind(worst), sf_verdict_phrase(worst),
-                   "The worst verdict of %d runs. Indicative, not a certification.", o->count);
-    sf_chart_figure(page, &o->output, "compare", "softfall-post",
-                    "Deceleration from first contact on, filtered with CFC 1000");
-    if (o->series)
-        put_series(page, o);
-    sf_html_heading(page, "Figures");
-    put_table(page, o);
-    sf_html_note(page, "compare.csv has every figure of summary.json.");
-    put_remarks(page, o);
-    return sf_html_end(page, o->command, "softfall-post " SF_VERSION " (" SF_GIT_REVISION ")", err);
+    sf_json_close(&json);
+    sf_json_close(&json);
+    return sf_staging_close(json.file, "compare.json", err);
 }
 
 static sf_status run(overlay *o, sf_error *err) {
-    char warning[320] = "";
     SF_TRY(sf_staging_check(o->directory, names, o->force, err));
     for (int k = 0; k < o->count && !o->series; k++)
         SF_TRY(read_run(&o->run[k], err));
@@ -362,16 +271,14 @@ static sf_status run(overlay *o, sf_error *err) {
         SF_TRY(read_series(o, err));
     if (sf_staging_begin(o->directory, names, o->force, &o->output, err) != SF_OK ||
         write_csv(o, err) != SF_OK || (o->series && write_series(o, err) != SF_OK) ||
-        write_picture(o, warning, sizeof warning, err) != SF_OK || write_page(o, err) != SF_OK ||
+        write_curves(o, err) != SF_OK || write_json(o, err) != SF_OK ||
         sf_staging_commit(&o->output, err) != SF_OK)
         return err->status;
     if (o->series)
         print_series(o);
-    sf_log_print(stdout, "Written: %s/report.html, compare.csv%s\n", o->directory,
-                 *warning ? "" : ", compare.png (compare.gp)");
-    const sf_sink sink = sf_program_sink("softfall-post");
-    if (*warning)
-        sf_sink_tell(&sink, SF_WARNING, "%s", warning);
+    sf_log_print(stdout, "Written: %s/compare.csv, compare.json, compare_curves.csv%s\n", o->directory,
+                 o->series ? ", series.csv" : "");
+    printf("A page of them, to read or print: softfall report %s\n", o->directory);
     return SF_OK;
 }
 

@@ -3,7 +3,7 @@
 
 #include "io/plain_file.h"
 #include "io/process.h"
-#include "post/view/cut.h"
+#include "post/view/axis.h"
 #include <string.h>
 #include <unistd.h>
 

@@ -65,6 +65,9 @@ static const sf_row comparison_rows[] = {
     {.key = "hic15", SF_ROW_OF(NUMBER, sf_comparison, injury.hic15.value)},
     {.key = "hic36", SF_ROW_OF(NUMBER, sf_comparison, injury.hic36.value)},
     {.key = "a_max_error", SF_ROW_OF(NUMBER, sf_comparison, peak_error)},
+    {.key = "hic_error", SF_ROW_OF(NUMBER, sf_comparison, hic_error)},
+    {.key = "agreement", SF_ROW_OF(STRING, sf_comparison, agreement)},
+    {.key = "finding", SF_ROW_OF(TEXT, sf_comparison, finding)},
 };
 
 /* ---- summary.json ---- */
@@ -116,8 +119,8 @@ static void put_comparison(sf_json *json, const char *path, const sf_comparison 
 
 sf_status sf_summary_write(const sf_staging *output, const sf_summary *s, sf_error *err) {
     SF_JSON_FILE(json, output, "summary.json", err);
-    SF_JSON_TEXTS(&json, {"program", "softfall-post " SF_VERSION}, {"results", s->results_path},
-                  {"caution", caution});
+    SF_JSON_TEXTS(&json, {"program", "softfall-post " SF_VERSION}, {"git_revision", SF_GIT_REVISION},
+                  {"command_line", s->command_line}, {"results", s->results_path}, {"caution", caution});
     put_test(&json, s->results);
     put_verdict(&json, s->verdict);
     SF_PRINTED(acceleration, 256, "%s%s", s->figures->acceleration, s->figures->passed);
@@ -182,6 +185,7 @@ static void print_comparison(FILE *out, const char *path, const sf_comparison *c
     sf_record_line(&c->measured.record, line, sizeof line);
     fprintf(out, "  record: %s\n%s", line,
             c->measured.record.grade == SF_GRADE_DO_NOT_USE ? "  comparison not usable\n" : "");
+    fprintf(out, "  %s\n", c->finding);
     sf_rows_text_table(out, sf_fit_rows(), (sf_records){c->fits, sizeof *c->fits, c->fit_count});
 }
 
