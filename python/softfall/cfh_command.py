@@ -7,7 +7,6 @@ import csv
 import io
 import json
 import math
-import os
 import shlex
 import sys
 from dataclasses import dataclass, field
@@ -20,11 +19,11 @@ from . import cfh, cfh_draws, cfh_page, laboratory, library, memory, output as o
 from .case import Case
 from .cfh import CRITERIA, FIGURES, UNITS, Bench, Point, Result, Search
 from .cfh_draws import Spread
-from .command import Parser, say, values_of
+from .command import Parser, add_jobs, jobs_of, say, values_of
 from .curves import STANDARD_GRAVITY
 from .errors import InputError, NumericError
 
-MOST_JOBS, LIST_LENGTH = 64, (2, 16)
+LIST_LENGTH = (2, 16)
 DRAW_TOLERANCE = 4  # of a draw over that of the case: its height is read between its drops, too
 FASTEST = 1.03  # speed over that of free fall, beyond which a pair of a rig is wrong
 OUTPUT = ("report.html", "cfh.png", "cfh.csv", "cfh_draws.csv", "cfh_curves.csv", "cfh.json")
@@ -52,9 +51,7 @@ def parser(prog: str) -> Parser:
     add("--rig", metavar="CSV", help="heights are those of a rig with friction: v^2 = 2 g_eff h, with g_eff fitted to a table of heights and speeds")
     add("--posterior", metavar="FOLDER", help="draws of the foam, draw-001.cfg ..., as softfall-fit drop writes them: gives the height that the pad has at least")
     add("--quantile", metavar="SHARE", type=float, default=0.05, help="with --posterior: share of the foams that may be below the answer (default 0.05)")
-    add("-j", "--jobs", metavar="N", type=int, help=f"drops side by side, {MOST_JOBS} at most (default: as many as processors); the same results")
-    add("-t", "--threads", metavar="N", type=int, help=argparse.SUPPRESS)
-    add("--retry", action="store_true", help="simulate drops again that failed earlier")
+    add_jobs(made)
     return made
 
 
@@ -110,8 +107,7 @@ class Study:
     def bench(self, tell: Callable[[str], None]) -> Bench:
         """Returns what simulates drops of the case, kept in the folder of the output."""
         memory.hold_units()
-        return Bench(str(self.case.path), _overrides(self.case), Path(self.options.output), self.options.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0))),
-                     self.options.retry, tell)
+        return Bench(str(self.case.path), _overrides(self.case), Path(self.options.output), jobs_of(self.options), self.options.retry, tell)
 
     @property
     def middle(self) -> float:
@@ -141,10 +137,7 @@ def _check(o: argparse.Namespace) -> None:
     for name, low, high in (("limit_g", 0, 1e9), ("limit_hic", 0, 1e9), ("tolerance", 1e-4, 0.2), ("quantile", 0, 0.5)):
         if not low < getattr(o, name) <= high:
             raise InputError(f"--{name.replace('_', '-')} {getattr(o, name):g} is outside of {low:g} to {high:g}")
-    if o.threads is not None:
-        raise InputError(f"--threads={o.threads}: each drop takes one thread; give --jobs, the number of drops side by side")
-    if o.jobs is not None and not 1 <= o.jobs <= MOST_JOBS:
-        raise InputError(f"--jobs {o.jobs} is outside of 1 to {MOST_JOBS}")
+    jobs_of(o)
     if o.heights and (o.height or o.max_height):
         raise InputError(f"--heights is the whole list: {'--height' if o.height else '--max-height'} does not go with it")
     if "missile.velocity" in values_of(o.set):

@@ -67,6 +67,25 @@ class _Once(argparse._StoreAction):
         super().__call__(parser, namespace, values, option_string)
 
 
+MOST_JOBS = 64
+
+
+def add_jobs(made: "Parser") -> None:
+    """Adds the options of a command that runs drops side by side in memory."""
+    made.options.add_argument("-j", "--jobs", metavar="N", type=int, help=f"drops side by side, {MOST_JOBS} at most (default: as many as processors); the same results")
+    made.options.add_argument("--retry", action="store_true", help="simulate drops again that failed earlier")
+    made.options.add_argument("-t", "--threads", help=argparse.SUPPRESS)  # of the programs that were in C
+
+
+def jobs_of(options: argparse.Namespace) -> int:
+    """Returns how many drops run side by side."""
+    if options.threads is not None:
+        raise InputError(f"--threads={options.threads}: each drop takes one thread; give --jobs, the number of drops side by side")
+    if options.jobs is not None and not 1 <= options.jobs <= MOST_JOBS:
+        raise InputError(f"--jobs {options.jobs} is outside of 1 to {MOST_JOBS}")
+    return options.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0)))
+
+
 class WrongOption(InputError):
     """The command line has an option or an argument that the command does not take, or lacks one."""
 

@@ -26,19 +26,6 @@ class _Failure(c.Structure):
     _fields_ = [("status", c.c_int), ("text", c.c_char * 1024)]
 
 
-class _Description(c.Structure):
-    _fields_ = [("node_count", c.c_int64), ("symmetry_factor", c.c_int64), ("thickness", c.c_double), ("missile_mass", c.c_double),
-                ("missile_speed", c.c_double), ("end_time", c.c_double), ("has_prescribed_motion", c.c_int)]
-
-
-class _Variant(c.Structure):
-    _fields_ = [("speed", c.c_double), ("mass", c.c_double), ("thickness", c.c_double), ("material", c.c_void_p)]
-
-
-class _DropOptions(c.Structure):
-    _fields_ = [("threads", c.c_int), ("end_time", c.c_double)]
-
-
 @functools.lru_cache(maxsize=None)
 def _load() -> c.CDLL:
     """Loads the library beside the programs in use, so that checks and runs are of one build."""
@@ -54,11 +41,6 @@ def _load() -> c.CDLL:
             library.softfall_record_curve.restype = library.softfall_material_curve.restype = c.c_int64
             library.softfall_material_parameters.restype = c.c_char_p
             library.softfall_material_parameters.argtypes = library.softfall_material_free.argtypes = [c.c_void_p]
-            library.softfall_drop_history.restype = c.c_int64
-            library.softfall_drop_history.argtypes = [c.c_void_p, c.c_char_p, c.c_void_p]
-            library.softfall_model_describe.restype, library.softfall_model_describe.argtypes = _Description, [c.c_void_p]
-            for released in ("model", "drop", "figures"):
-                library[f"softfall_{released}_free"].argtypes = [c.c_void_p]
             library.softfall_record_grade.argtypes = library.softfall_record_free.argtypes = [c.c_void_p]
             return library
     raise Error(f"there is no library libsoftfall-build.so in {prefix}/lib, beside the programs of {programs.folder()}", 3)
@@ -194,53 +176,6 @@ def refine(fine: float, coarse: float, ratio: float, cells: float) -> tuple[floa
     refined = (c.c_double * 2)()
     _call("softfall_refine", c.c_double(fine), c.c_double(coarse), c.c_double(ratio), c.c_double(cells), refined)
     return refined[0], refined[1]
-
-
-class Model:
-    """A model in memory, without a file: softfall_model_build."""
-
-    def __init__(self, path: str, overrides: Sequence[str]) -> None:
-        self.handle, self._free = c.c_void_p(), _load().softfall_model_free
-        with _case(path, overrides) as case:
-            _call("softfall_model_build", case, None, c.byref(self.handle))
-        told = _load().softfall_model_describe(self.handle)
-        self.thickness: float = told.thickness  # m
-        self.nodes: int = told.node_count
-
-    def __del__(self) -> None:
-        if hasattr(self, "_free"):
-            self._free(self.handle)
-
-    def drop(self, path: str, overrides: Sequence[str], thickness: float, figures: Sequence[str], own_foam: bool = True) -> tuple[dict[str, float], Array, Array]:
-        """Simulates the drop of a variant: speed, mass and foam are those of a case with its overrides, the thickness (m) is scaled from that of the
-        model; without `own_foam`, of a pad of layers, the foams are those of the model. Returns figures by their keys, and the history of the acceleration: time in s, acceleration in m/s2."""
-        library, variant, foam = _load(), c.c_void_p(), c.c_void_p()
-        drop, made, number, values = c.c_void_p(), c.c_void_p(), c.c_double(), c.POINTER(c.c_double)()
-        try:
-            with _case(path, overrides) as case:
-                if own_foam:
-                    _call("softfall_case_material", case, c.byref(foam))
-                listing = library.softfall_case_parameters(case).decode(errors="replace")
-            speed, mass = (float(found[1]) if (found := re.search(rf'^missile\.{key} +"[^"]*" +(\S+)', listing, re.MULTILINE)) else 0.0
-                           for key in ("velocity", "mass"))
-            _call("softfall_model_vary", self.handle, c.byref(_Variant(speed, mass, thickness, foam)), c.byref(variant))
-            _call("softfall_drop_create", variant, c.byref(_DropOptions(1, 0.0)), c.byref(drop))
-            _call("softfall_drop_run", drop, None, None, None)
-            _call("softfall_drop_figures", drop, c.c_double(1000), c.byref(made))
-            told = {}
-            for key in figures:
-                _call("softfall_figure", made, key.encode(), c.byref(number))
-                told[key] = number.value
-            columns = []
-            for name in (b"time", b"acceleration"):
-                count = library.softfall_drop_history(drop, name, c.byref(values))
-                columns.append(np.array(values[:count]))
-            return told, columns[0], columns[1]
-        finally:
-            library.softfall_figures_free(made)
-            library.softfall_drop_free(drop)
-            library.softfall_model_free(variant)
-            library.softfall_material_free(foam)
 
 
 class RecordParts(NamedTuple):

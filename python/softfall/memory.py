@@ -8,10 +8,14 @@ import hashlib
 import itertools
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any, NamedTuple, Sequence
 
+import numpy as np
+
 from . import library
+from .array import Array
 from .errors import Error
 
 GRADES = ("valid", "valid with remarks", "do not use")
@@ -57,6 +61,15 @@ class _Options(c.Structure):
     _fields_ = [("threads", c.c_int), ("end_time", c.c_double)]
 
 
+class _Description(c.Structure):
+    _fields_ = [("node_count", c.c_int64), ("symmetry_factor", c.c_int64), ("thickness", c.c_double), ("missile_mass", c.c_double),
+                ("missile_speed", c.c_double), ("end_time", c.c_double), ("has_prescribed_motion", c.c_int)]
+
+
+class _Variant(c.Structure):
+    _fields_ = [("speed", c.c_double), ("mass", c.c_double), ("thickness", c.c_double), ("material", c.c_void_p)]
+
+
 @functools.lru_cache(maxsize=None)
 def _load() -> c.CDLL:
     lib = library._load()
@@ -70,6 +83,8 @@ def _load() -> c.CDLL:
     lib.softfall_figures_sure.restype, lib.softfall_figures_sure.argtypes = c.c_double, [c.c_void_p]
     lib.softfall_case_data_end.restype, lib.softfall_case_data_end.argtypes = c.c_double, [c.c_void_p, c.c_int]
     lib.softfall_case_has_files.argtypes = [c.c_void_p, c.c_char_p]
+    lib.softfall_drop_history.restype, lib.softfall_drop_history.argtypes = c.c_int64, [c.c_void_p, c.c_char_p, c.c_void_p]
+    lib.softfall_model_describe.restype, lib.softfall_model_describe.argtypes = _Description, [c.c_void_p]
     return lib
 
 
@@ -195,6 +210,46 @@ class Inputs:
         finally:
             _load().softfall_case_free(case)
         return model
+
+
+class Model:
+    """A model in memory, without a file, whose drops are varied."""
+
+    def __init__(self, path: str, overrides: Sequence[str]) -> None:
+        self.handle, self._free = c.c_void_p(), _load().softfall_model_free
+        with library._case(path, overrides) as case:
+            library._call("softfall_model_build", case, None, c.byref(self.handle))
+        told = _load().softfall_model_describe(self.handle)
+        self.thickness: float = told.thickness  # m
+        self.nodes: int = told.node_count
+
+    def __del__(self) -> None:
+        if hasattr(self, "_free"):
+            self._free(self.handle)
+
+    def drop(self, path: str, overrides: Sequence[str], thickness: float, own_foam: bool = True) -> tuple[dict[str, float], Array, Array]:
+        """Simulates the drop of a variant: speed, mass and foam are those of a case with its overrides, the thickness (m) is scaled from that of the
+        model; without `own_foam`, of a pad of layers, the foams are those of the model. Returns figures, and the history of the acceleration: time in s, acceleration in m/s2."""
+        lib, variant, foam, drop, values = _load(), c.c_void_p(), c.c_void_p(), c.c_void_p(), c.POINTER(c.c_double)()
+        try:
+            with library._case(path, overrides) as case:
+                if own_foam:
+                    library._call("softfall_case_material", case, c.byref(foam))
+                listing = lib.softfall_case_parameters(case).decode(errors="replace")
+            speed, mass = (float(found[1]) if (found := re.search(rf'^missile\.{key} +"[^"]*" +(\S+)', listing, re.MULTILINE)) else 0.0
+                           for key in ("velocity", "mass"))
+            library._call("softfall_model_vary", self.handle, c.byref(_Variant(speed, mass, thickness, foam)), c.byref(variant))
+            library._call("softfall_drop_create", variant, c.byref(_Options(1, 0)), c.byref(drop))
+            library._call("softfall_drop_run", drop, None, None, None)
+            columns = []
+            for name in (b"time", b"acceleration"):
+                count = lib.softfall_drop_history(drop, name, c.byref(values))
+                columns.append(np.array(values[:count]))
+            return _figures(drop).figures, columns[0], columns[1]
+        finally:
+            lib.softfall_drop_free(drop)
+            lib.softfall_model_free(variant)
+            lib.softfall_material_free(foam)
 
 
 def _figures(drop: c.c_void_p) -> DropFigures:

@@ -6,7 +6,6 @@ import argparse
 import contextlib
 import json
 import math
-import os
 import shlex
 import sys
 import warnings
@@ -19,7 +18,7 @@ from . import effects, library, memory, output as output_files, rows_command, sw
 from .array import Array
 from .campaign import ANVIL, REFINED, Campaign, Table, estimate
 from .case import Case
-from .command import Parser, say
+from .command import Parser, add_jobs, jobs_of, say
 from .drop import read_results
 from .effects import Statements
 from .errors import Error, InputError, NumericError, SoftfallWarning
@@ -28,7 +27,7 @@ from .plan import Limit, Plan
 from .progress import duration
 from .store import NAME
 
-MOST_VIEWS, TABLE_ROWS, MOST_JOBS = 50, 10, 64
+MOST_VIEWS, TABLE_ROWS = 50, 10
 OUTPUT = ("report.html", "sweep.json", "drops.csv", *(f"{name}.png" for name in sweep_page.PICTURES))
 CAUTION = "Figures of simulated drops: indicative, not a certification."
 
@@ -46,25 +45,19 @@ def parser(prog: str) -> Parser:
     add("-y", "--yes", action="store_true", help="take a plan of more than 20,000 runs")
     add("--views", metavar="RUNS", help="afterwards simulate some runs with all fields, and link their report.html and view.html: worst, limit (nearest to it), all, or "
                                         "ids, with commas between them")
-    add("-j", "--jobs", metavar="N", type=int, help=f"drops side by side, {MOST_JOBS} at most (default: as many as processors); the same results")
     add("--engine", metavar="NAME", default="local", help="what runs the drops: local (default) or snakemake, in jobs of a block of rows each")
     add("--profile", metavar="PROFILE", help="with --engine snakemake: a profile of Snakemake; slurm: the one that comes with softfall")
     add("--per-job", metavar="N", type=int, help="with --engine snakemake: rows of a job (default: as many as take three minutes)")
-    add("--retry", action="store_true", help="simulate drops again that failed earlier")
-    add("-t", "--threads", help=argparse.SUPPRESS)  # of the earlier softfall-sweep
+    add_jobs(made)
     return made
 
 
 def run(options: argparse.Namespace, tell: Callable[[str], None] = say, command: str = "") -> int:
     """Runs the command and returns its exit code. `command`: what was called, for the report, if it was not the command line."""
-    if options.threads is not None:
-        raise InputError(f"--threads={options.threads}: each drop takes one thread; give --jobs, the number of drops side by side")
-    if options.jobs is not None and not 1 <= options.jobs <= MOST_JOBS:
-        raise InputError(f"--jobs {options.jobs} is outside of 1 to {MOST_JOBS}")
+    jobs = jobs_of(options)
     if options.per_job is not None and options.per_job < 1:
         raise InputError(f"--per-job {options.per_job} is below 1")
     rows_command.check_engine(options.engine, options.profile, options.per_job)
-    jobs = options.jobs or min(MOST_JOBS, len(os.sched_getaffinity(0)))
     memory.hold_units()
     folder, plan = Path(options.output), Plan(options.plan, options.yes)
     if options.views is not None:

@@ -22,7 +22,7 @@ from typing import Any, Callable
 
 import numpy as np
 
-from . import curves, form, library, record, run_command, run_keys
+from . import curves, form, library, memory, record, run_command, run_keys
 from .case import Case, Step
 from .errors import Error, InputError, NumericError
 from .progress import Bar
@@ -48,7 +48,7 @@ class Live:
     """Axisymmetric drops in memory: models are built once for each mesh, and varied."""
 
     def __init__(self) -> None:
-        self._models: dict[tuple[Any, ...], library.Model] = {}
+        self._models: dict[tuple[Any, ...], memory.Model] = {}
 
     def answer(self, path: str, values: dict[str, str], mesh: str) -> dict[str, Any]:
         """Returns figures and curve of the drop of a case with texts of the form, on one of the meshes of SPACING."""
@@ -64,9 +64,9 @@ class Live:
         thickness = self._value(case, "thickness") * unit
         before = len(self._models)
         model, thickness = self._model(case, overrides, thickness)
-        figures, seconds, acceleration = model.drop(path, texts, thickness, LIVE_FIGURES, own_foam=not form.has_layers(case))
+        figures, seconds, acceleration = model.drop(path, texts, thickness, own_foam=not form.has_layers(case))
         filtered = curves.cfc(seconds, acceleration / curves.STANDARD_GRAVITY)
-        return {"figures": {key: value if math.isfinite(value) else None for key, value in figures.items()}, "curve": thin(seconds, filtered),
+        return {"figures": {key: figures[key] if math.isfinite(figures[key]) else None for key in LIVE_FIGURES}, "curve": thin(seconds, filtered),
                 "mesh": mesh, "spacing_mm": 1e3 * SPACING[mesh] if spacing else None, "nodes": model.nodes, "built": len(self._models) != before, "seconds": round(time.monotonic() - began, 3)}
 
     @staticmethod
@@ -80,7 +80,7 @@ class Live:
         except ValueError:
             return 0.0
 
-    def _model(self, case: Case, overrides: dict[str, str], thickness: float) -> tuple[library.Model, float]:
+    def _model(self, case: Case, overrides: dict[str, str], thickness: float) -> tuple[memory.Model, float]:
         """Returns a model of the mesh of a case, and the thickness to scale it to, 0: none, as where the parameter is not that of the pad."""
         varied = ("missile.velocity", "missile.mass", "geometry.parameters.thickness")
         foam = () if form.has_layers(case) else ("material.", "pad.stress_factor")  # varied, too
@@ -93,7 +93,7 @@ class Live:
                 return model, thickness if known[5] else 0
         while len(self._models) >= MOST_MODELS:
             del self._models[next(iter(self._models))]
-        made = library.Model(str(case.path), [f"{key}={text}" for key, text in overrides.items()])
+        made = memory.Model(str(case.path), [f"{key}={text}" for key, text in overrides.items()])
         is_of_pad = thickness > 0 and math.isclose(made.thickness, thickness, rel_tol=1e-6)
         self._models[(*name, thickness, is_of_pad)] = made
         return made, thickness if is_of_pad else 0
