@@ -8,6 +8,8 @@ import os
 from pathlib import Path
 from typing import Callable
 
+import numpy as np
+
 from .command import Parser, say
 from .errors import InputError, NumericError
 from .fit import files, input as fit_input, page
@@ -106,13 +108,22 @@ def run(options: argparse.Namespace, tell: Callable[[str], None] = say) -> int:
         found, failures = _fit(given, bench, tell)
         s = Study(given, given.path.read_text(encoding="utf-8", errors="replace"), found, failures)
         s.best = min((k for k, one in enumerate(found) if one), key=lambda k: found[k].misfit)  # type: ignore[union-attr]
+        if given.posterior:
+            from .fit import posterior  # with scikit-learn, which takes two seconds
+            s.average = posterior.average(found, [model.label for model in given.models], failures, given.seed, tell)
+            s.best = int(np.argmax(s.average.weights))
         s.simulated, s.kept, s.seconds = bench.simulated, bench.found, bench.seconds
         files.look_at_curve(s)
     files.write(s, folder)
     page.write(s, folder)
+    files.write_posterior(s, folder)
     for name in STALE:
         (folder / name).unlink(missing_ok=True)
     _print(s, tell)
+    for line in s.average.warnings() if s.average else []:
+        tell(f"  less sure than it looks: {line}")
+    for row in s.average.page()["predictions"] if s.average else []:
+        tell(f"  {row[0]:<20} {row[1]} {row[2]} (90 %: {row[3]}; 95 %: {row[4]}; of a single pad and drop: {row[5]})")
     tell(f"{s.simulated} drops simulated in {s.seconds:.0f} s of processor time, {s.kept} were there\nWritten: {folder}/{given.name}.cfg, report.html, fit.json, fit.png")
     lost = [f"{one.problem.model.label}: {one.reason}" for one in found if one and not one.converged]
     if lost:

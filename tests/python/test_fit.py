@@ -15,13 +15,13 @@ import pytest
 
 import softfall
 from conftest import command_here
-from softfall import library, memory
-from softfall.fit import input as fit_input
+from softfall import cfh_draws, library, memory
+from softfall.fit import input as fit_input, posterior
 from softfall.fit.drops import COARSE, OWN, SECTION, Bench
 from softfall.fit.search import Problem
 
 BIN, ROOT = Path(os.environ["SF_BIN_DIR"]), Path(__file__).resolve().parents[2]
-START = 'density = "35 kg/m3"; E = "0.4136 MPa"; curve = "start.csv"; HU = 0.3; SHAPE = 3.0; DAMP = 0.05; rate_factor = 0.2; rate_reference = "1 1/s"; rate_filter_time = "0.5 ms";\n'
+START = 'law = "low_density_foam"; density = "35 kg/m3"; E = "0.4136 MPa"; curve = "start.csv"; HU = 0.3; SHAPE = 3.0; DAMP = 0.05; rate_factor = 0.2; rate_reference = "1 1/s"; rate_filter_time = "0.5 ms";\n'
 TRUE_SCALE, TRUE_HU = 1.2, 0.45
 
 
@@ -126,19 +126,68 @@ def test_a_drop_in_memory_is_that_of_the_case_on_every_mesh(lab: Path, tmp_path:
     assert np.max(own.shown()) == pytest.approx(figures["a_max_g"], rel=0.02)
 
 
+def polyethylene() -> str:
+    """examples/foams/pe.cfg without a posterior, to be read from another folder."""
+    return (ROOT / "examples/foams/pe.cfg").read_text().replace("pe_start.cfg", str(ROOT / "examples/foams/pe_start.cfg")) + "posterior = false;\n"
+
+
 def test_a_search_that_ends_on_a_bound_says_which(tmp_path: Path) -> None:
     """Peaks far above what the exponent of the plateau alone can reach: rusch_m goes to its bound."""
-    text = (ROOT / "examples/foams/pe.cfg").read_text().replace("pe_start.cfg", str(ROOT / "examples/foams/pe_start.cfg")).replace('"68.04 kPa"', '"150 kPa"')
+    text = polyethylene().replace('"68.04 kPa"', '"150 kPa"')
     (tmp_path / "bound.cfg").write_text(re.sub(r"unknown = .*", 'unknown = ( { name = "rusch_m"; prior_sd = 10.0; } );', text))
     told = command_here("fit", tmp_path / "bound.cfg", "-o", tmp_path / "out", "-j", 1)
     assert json.loads((tmp_path / "out/fit.json").read_text())["on_bounds"] == ["rusch_m stands at its upper bound"]
     assert "rusch_m stands at its upper bound" in told.stdout and "rusch_m stands at its upper bound" in (tmp_path / "out/pe.cfg").read_text()
 
 
+@pytest.fixture(scope="module")
+def sampled(lab: Path, found: dict[str, Any]) -> dict[str, Any]:
+    """fit.json of the same fit with a small posterior; its drops are those of the fit at first."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in (("FIRST", 24), ("SECOND", 16), ("DRAWS", 40), ("STEPS", 300), ("BURN", 100)):
+            patch.setattr(posterior, name, value)
+        (lab / "post.cfg").write_text((lab / "fit.cfg").read_text().replace("posterior = false;", ""))
+        (lab / "post").mkdir()
+        (lab / "post/drops.sqlite").write_bytes((lab / "out/drops.sqlite").read_bytes())
+        run(lab / "post.cfg", "-o", lab / "post", "-j", 1)
+    return dict(json.loads((lab / "post/fit.json").read_text()))
+
+
+def test_the_posterior_holds_the_truth(lab: Path, found: dict[str, Any], sampled: dict[str, Any]) -> None:
+    model, truth = sampled["inference"]["models"][0], json.loads((lab / "truth.json").read_text())["other"]
+    scale, hu = model["parameters"][:2]
+    assert scale["low95"] < TRUE_SCALE < scale["high95"] and hu["low95"] < TRUE_HU < hu["high95"]
+    assert model["largest_rhat"] < 1.1 and model["effective_simulated_draws"] > 8 and model["emulator_rms"] < 0.02
+    for one in sampled["inference"]["predictions"][:2]:
+        value = truth["a_max_g" if one["quantity"] == "a_max_g" else "hic"]
+        assert one["low95"] < one["low90"] < value < one["high90"] < one["high95"] and one["share_of_draws_without_value"] == 0
+    linear = found["parameters"][0]
+    assert 0.5 < (scale["high95"] - scale["low95"]) / (linear["high95_SI"] - linear["low95_SI"]) < 2.5  # kappa widens it
+
+
+def test_draws_are_materials_of_every_model_with_errors_of_the_responses(lab: Path, sampled: dict[str, Any]) -> None:
+    with open(lab / "post/posterior.csv", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == 200 and {row["model"] for row in rows} == {sampled["model"]} and len({row["stress_scale"] for row in rows}) > 10
+    draws = cfh_draws.read(lab / "post/posterior", softfall.Case(lab / "other.cfg"), {})
+    assert len(draws) == 200 and draws[7].response is not None and draws[7].form == sampled["model"]
+    assert float(draws[7].values["HU"]) == pytest.approx(float(rows[7]["HU"]), rel=1e-6)
+    assert draws[7].response[0] == pytest.approx(float(rows[7]["a_max_error"]), rel=1e-6)
+
+
+def test_importance_weights_are_those_of_the_densities() -> None:
+    """Draws of a normal of width 1.3 weighed for one of width 1: mean square 1, and a small k."""
+    x = 1.3 * np.random.default_rng(3).standard_normal(4000)
+    weights, k = posterior.pareto(-0.5 * x**2 + 0.5 * (x / 1.3) ** 2)
+    assert float(weights @ x**2) == pytest.approx(1.0, rel=0.05) and k < 0.5
+    assert posterior.pareto(2.0 * np.abs(x) ** 1.5)[1] > 0.7  # a tail that no weight makes up for
+
+
 def test_cushion_curves_alone(tmp_path: Path) -> None:
     """Polyethylene by its cushion curves: the foam of the C program, 2026-11, whose peaks are in tests/reference."""
     reference = json.loads((ROOT / "tests/reference/fit-drop-cushion.json").read_text())["figures"]["fit.json"]
-    run(ROOT / "examples/foams/pe.cfg", "-o", tmp_path / "out", "-j", 1)
+    (tmp_path / "pe.cfg").write_text(polyethylene())
+    run(tmp_path / "pe.cfg", "-o", tmp_path / "out", "-j", 1)
     told = json.loads((tmp_path / "out/fit.json").read_text())
     assert told["converged"] and told["misfit"] <= 1.02 * reference["misfit"]
     for mine, theirs in zip(told["cushions"], reference["cushions"]):

@@ -8,7 +8,7 @@ import json
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from ..memory import GRADES, nine_digits
 from .drops import GRID
 from .input import KINDS, Input
 from .search import Found, press
+
+if TYPE_CHECKING:
+    from .posterior import Average
 
 BIN = 0.05  # strain, of the table of the curve
 BINS = 19
@@ -33,7 +36,7 @@ class Study:
     found: list[Found | None]
     failures: list[str]
     best: int = 0
-    average: Any = None
+    average: Average | None = None
     simulated: int = 0
     kept: int = 0
     seconds: float = 0.0
@@ -228,3 +231,17 @@ def write(s: Study, folder: Path) -> None:
     output_files.write(folder / "fit.json", json.dumps(summary(s), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
 
+
+
+def write_posterior(s: Study, folder: Path) -> None:
+    """Writes posterior.csv and the draws; those of an earlier fit go before, also where this one has none."""
+    place = folder / "posterior"
+    for path in [*place.glob("draw-*.cfg"), *place.glob("draw-*.csv")]:
+        path.unlink()
+    (folder / "posterior.csv").unlink(missing_ok=True)
+    if s.average:
+        place.mkdir(exist_ok=True)
+        s.average.write_draws(str(place), output_files.write, lambda path: Path(path).read_text(encoding="utf-8"))
+        output_files.write(folder / "posterior.csv", _table(s.average.table()))
+    elif place.is_dir() and not any(place.iterdir()):
+        place.rmdir()

@@ -2,6 +2,7 @@
 """The file of a fit: start material, forms of the curve, unknown parameters with their priors, drops and tests that were measured, drops to predict."""
 from __future__ import annotations
 
+import csv
 import math
 import re
 from dataclasses import dataclass, field
@@ -10,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .. import laboratory, library, memory, record, settings
+from .. import laboratory, library, memory, output as output_files, record, settings
 from ..array import Array
 from ..errors import Error, InputError
 from ..settings import Setting
 
-MOST_UNKNOWNS, MOST_DROPS, MOST_MODELS, MOST_TESTS = 16, 24, 12, 8
+MOST_UNKNOWNS, MOST_DROPS, MOST_MODELS, MOST_TESTS = 20, 24, 16, 8
 KEYS = ("name", "title", "material", "curve_form", "solid_density", "start", "unknown", "drops", "predict", "forms", "seed", "posterior", "compressions", "cushions",
         "coarse_set", "mount", "mount_frequency_sd", "mount_damping_sd", "coupling", "coupling_sd")
 CHAIN = ("mount_frequency", "mount_damping", "coupling")
@@ -23,6 +24,8 @@ TERMS = {"none": (), "factor": ("factor",), "maxwell": ("maxwell",), "both": ("f
 SAMPLE_STEP, SAMPLE_LEVEL, MOST_SAMPLES = 0.5e-3, 0.05, 200  # s, share of the peak, of a measured curve
 COPY = 1e-3  # of the peak: curves that differ by less are one
 STRAIN_STEP, LOW_STRESS, LOW_START = 0.05, 0.02, 0.01  # of a compression test: between points; share of the largest stress in the scatter; late first strain
+SPECIMEN = ("side", "width", "diameter", "area", "thickness")
+TOE_WITHIN, TOE_OVER, TOE_POINTS, MOST_TOE = 0.15, 0.01, 5, 0.1  # strain in which the steepest part is looked for, over which, by how many points; the most that goes
 ENERGIES = 6  # points of a curve of the stress-energy method
 GIVEN_SOLID = (300.0, 20000.0)  # kg/m3, of solids that foams are made of
 
@@ -279,19 +282,23 @@ def _name(group: Setting, usual: str, number: int) -> str:
 
 
 def _compression(group: Setting, number: int) -> Compression:
-    group.names(("name", "file", "rate", "specimen", "toe_correction", "invert", "sd", "cycle", "contact_force"))
-    later = next((key for key in ("specimen", "toe_correction", "invert", "contact_force") if group.get(key)), None)
-    if later:
-        group.member(later).refuse(f"{later}: give strain and stress: `softfall read FILE -o test.csv` makes them of what the machine wrote")
+    group.names(("name", "file", "rate", "specimen", "toe_correction", "invert", "sd", "cycle"))
     name, path = _name(group, "compression", number), group.file("file")
     rate, sd = _quantity(group, "rate", "s-1"), group.number("sd", 1e-4, 1, 0.05)
-    cycle = {"cycle": group.text("cycle")} if group.get("cycle") else {}
+    options = {"cycle": group.text("cycle")} if group.get("cycle") else {}
+    if group.get("specimen"):
+        specimen = group.member("specimen")
+        specimen.names(SPECIMEN)
+        options |= {key: specimen.text(key) for key in SPECIMEN if specimen.get(key)}
+    invert = group.choice("invert", ("none", "strain", "stress", "both"))
     try:
-        reading = laboratory.read(path, kind="compression", **cycle)
+        reading = laboratory.read(path, kind="compression", **options, **({"invert": invert} if invert != "none" else {}))
     except Error as error:
         group.member("file").refuse(str(error))
     strain, stress = _as_test(group, reading.frame)
     top = int(np.argmax(strain))
+    if group.flag("toe_correction", False):
+        strain = strain - _toe(group, strain[:top + 1], stress[:top + 1])
     first = strain[0] + LOW_START if strain[0] >= LOW_START else 0.0
     grid = np.concatenate([[STRAIN_STEP / 2], np.arange(STRAIN_STEP, strain[top] + 1e-9, STRAIN_STEP)])
     grid = grid[grid >= first]
@@ -304,6 +311,19 @@ def _compression(group: Setting, number: int) -> Compression:
     scale = float(stress.max())
     values = np.concatenate([loading, unloading])
     return Compression(name, rate, np.concatenate([grid, back]), values, len(grid), float(strain[top]), sd * np.hypot(values, LOW_STRESS * scale), reading.words)
+
+
+def _toe(group: Setting, strain: Array, stress: Array) -> float:
+    """Returns where the steepest part of loading, a line over 1 % strain, meets zero stress."""
+    best, zero = 0.0, 0.0
+    for start in strain[strain < TOE_WITHIN]:
+        part = (strain >= start) & (strain <= start + TOE_OVER)
+        if part.sum() >= TOE_POINTS:
+            slope, at = np.polyfit(strain[part], stress[part], 1)
+            best, zero = max((best, zero), (float(slope), float(-at / slope) if slope > 0 else 0.0))
+    if not best > 0:
+        group.member("toe_correction").refuse(f"toe_correction needs {TOE_POINTS} points over 1 % strain below {TOE_WITHIN:g}, on which the stress rises")
+    return zero if zero <= MOST_TOE else group.member("toe_correction").refuse(f"the toe would take {100 * zero:.1f} % strain; at most {100 * MOST_TOE:g} % may go")
 
 
 def _as_test(group: Setting, frame: Any) -> tuple[Array, Array]:
@@ -323,15 +343,19 @@ def _cushion(group: Setting, number: int) -> Cushion:
     name, thickness, height = _name(group, "cushion", number), _quantity(group, "thickness", "m"), _quantity(group, "drop_height", "m")
     if kinds == ["file"]:
         path = group.file("file")
-        table = np.genfromtxt(path, delimiter=",", names=True, dtype=float, deletechars="")
-        if set(table.dtype.names or ()) < {"static_stress_kPa", "peak_g"}:
-            group.member("file").refuse(f"{path} must have the columns static_stress_kPa and peak_g")
-        stress, peak = 1e3 * np.atleast_1d(table["static_stress_kPa"]), np.atleast_1d(table["peak_g"])
+        text = output_files.read(path).decode(errors="replace")
+        rows = list(csv.DictReader(line for line in text.splitlines() if line.strip() and not line.startswith("#")))
+        try:
+            stress, peak = (scale * np.array([float(row[key]) for row in rows]) for key, scale in (("static_stress_kPa", 1e3), ("peak_g", 1.0)))
+        except (KeyError, TypeError, ValueError):
+            group.member("file").refuse(f"{path} must have the columns static_stress_kPa and peak_g, with a number in every row")
+        if not len(rows):
+            group.member("file").refuse(f"{path} has no points")
     elif kinds == ["points"]:
-        rows = group.member("points").items
-        if not rows or any(len(row.items) != 2 or not all(item.is_number for item in row.items) for row in rows):
+        listed = group.member("points").items
+        if not listed or any(len(row.items) != 2 or not all(item.is_number for item in row.items) for row in listed):
             group.member("points").refuse("points must be a list of pairs, kPa and g: points = ( [2.0, 60.0], [5.0, 55.0] )")
-        pairs = np.array([[float(item.value) for item in row.items] for row in rows])
+        pairs = np.array([[float(item.value) for item in row.items] for row in listed])
         stress, peak = 1e3 * pairs[:, 0], pairs[:, 1]
     else:
         inner = group.member("stress_energy")

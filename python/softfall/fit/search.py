@@ -138,7 +138,7 @@ class Problem:
         return np.concatenate([made, samples, [max(0.0, (response[count] - math.log(DEEP)) / DEEP_SD)]])
 
     def prior(self, x: Array) -> Array:
-        return (self.logarithm(x) - self.center) / self.sd
+        return np.asarray((self.logarithm(x) - self.center) / self.sd)
 
     def assemble(self, x: Array, responses: Sequence[Array | None]) -> Array:
         """Returns all residuals; inf where a drop fails, which a step does not pass."""
