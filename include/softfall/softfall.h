@@ -160,6 +160,43 @@ SOFTFALL_API softfall_status softfall_compress(const softfall_material *material
                                                const double *time, const double *strain, int64_t count,
                                                double *stress, softfall_error *error);
 
+/* Sets the peak deceleration (g, F/m, CFC 1000) of a flat mass of `static_stress` (Pa, weight over area) on a
+ * block of this foam, `thickness` and `drop_height` in m (ASTM D1596). SOFTFALL_NUMERIC: it collapses. */
+SOFTFALL_API softfall_status softfall_cushion(const softfall_material *material, double static_stress,
+                                              double thickness, double drop_height, double *peak_g,
+                                              softfall_error *error);
+
+/* ---- Forms of a foam's loading curve (libsoftfall-build) ---- */
+
+/* A form of the loading curve (docs/identification.md, "Forms of the curve") on a start material, which has
+ * all that the form does not. Its parameters are numbers in SI units, in the order of the list. */
+typedef struct softfall_form softfall_form;
+
+/* `curve`: gas, gas_solid, rusch, avalle, spline or table. `solid_density`: kg/m3, of the solid in the cell
+ * walls, 0: not known. */
+SOFTFALL_API softfall_status softfall_form_read(const char *material, const char *curve, double solid_density,
+                                                softfall_form **out, softfall_error *error);
+SOFTFALL_API void softfall_form_free(softfall_form *form);
+/* JSON: "curve", "formula", "density" (kg/m3) and "curves" (of the start material), and of each of the
+ * "parameters" "name", "unit" of "per_unit" SI units, SI unit ("quantity", "" of a number), bounds "low" and
+ * "high", "prior_sd" of its logarithm, "used" (by this form), "usual" (unknown in a usual fit), "rate" (the
+ * term of the rate that it belongs to) and "description"; owned by the form. */
+SOFTFALL_API const char *softfall_form_parameters(const softfall_form *form);
+/* Fills `value` with medians of the priors and values of the start material, but for those that are `given`
+ * (NaN: not given). `unknown` 1: a term that the start material does not have gets a median. */
+SOFTFALL_API void softfall_form_start(const softfall_form *form, const double *given, const int *unknown,
+                                      double *value);
+/* Makes the foam of these values; `informed`: largest strain about which the data inform, 0: that of the
+ * curve's end. SOFTFALL_NUMERIC: they make no rising curve. */
+SOFTFALL_API softfall_status softfall_form_material(const softfall_form *form, const double *value,
+                                                    double informed, softfall_material **out,
+                                                    softfall_error *error);
+/* Writes `folder`/`name`.cfg with its curves beside it, `title` and `comments` (lines) above; files that are
+ * there are replaced. SOFTFALL_MODEL: softfall-pre would refuse the material, and none is written. */
+SOFTFALL_API softfall_status softfall_material_write(const softfall_material *material, const char *folder,
+                                                     const char *name, const char *title,
+                                                     const char *comments, softfall_error *error);
+
 /* ---- Input files of your own (libsoftfall-build) ---- */
 
 /* Reads a file in the syntax of a case (libconfig, with @include) and gives its settings as JSON: of each
@@ -341,6 +378,13 @@ SOFTFALL_API softfall_status softfall_hic(const double *time, const double *dece
  * measured curve: at its own rate if that is uniform. `filtered` [count] belongs to the caller. */
 SOFTFALL_API softfall_status softfall_cfc(const double *time, const double *value, int64_t count,
                                           double filter, double *filtered, softfall_error *error);
+/* Reads a deceleration in g, which has begun at rest, as an instrument does: through the accelerometer's
+ * mount, of `chain[0]` Hz (0: rigid) and damping `chain[1]`, and a high pass with the time constant
+ * `chain[2]` (s; 0: none), then filtered with CFC `filter`. Fills `read` [count] at the same times, and
+ * `contact`, the instant at which contact begins by the curve alone, as softfall-post aligns it. */
+SOFTFALL_API softfall_status softfall_reading(const double *time, const double *value, int64_t count,
+                                              const double chain[3], double filter, double *read,
+                                              double *contact, softfall_error *error);
 /* A figure at ever finer meshes and its error, `refined`, from those at a spacing and at `ratio` times it
  * (docs/python.md, "Two meshes for one answer"). `cells`: the finer mesh's number of cells over the coarser
  * one's; INFINITY: not known. SOFTFALL_INPUT, and NaN, where the pair tells no value; the sentence says why.

@@ -226,7 +226,7 @@ class Pads:
         if self.misfit >= MISFIT and self.effective_draws >= LEAST_DRAWS:
             return ""
         return (f"what was measured leaves {self.effective_draws:.1f} of {self.draws} draws, or fits none: a height or a scale in list.csv is wrong, or the foam is "
-                "none of them. Then give these drops to softfall-fit drop, and begin anew with its posterior and without them")
+                "none of them. Then give these drops to softfall fit, and begin anew with its posterior and without them")
 
     def interval(self, limits: Sequence[float | None]) -> tuple[float, float]:
         """Returns the 95 % interval of the critical height (m); inf: above the heights looked at."""

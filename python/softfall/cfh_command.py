@@ -49,7 +49,7 @@ def parser(prog: str) -> Parser:
     add("--heights", metavar="LIST", help='these heights instead of a search: "0.5 m,1 m,1.5 m,2 m"')
     add("--tolerance", metavar="SHARE", type=float, default=0.005, help="two drops this close hold the limit between them (default 0.005, half a percent)")
     add("--rig", metavar="CSV", help="heights are those of a rig with friction: v^2 = 2 g_eff h, with g_eff fitted to a table of heights and speeds")
-    add("--posterior", metavar="FOLDER", help="draws of the foam, draw-001.cfg ..., as softfall-fit drop writes them: gives the height that the pad has at least")
+    add("--posterior", metavar="FOLDER", help="draws of the foam, draw-001.cfg ..., as softfall fit writes them: gives the height that the pad has at least")
     add("--quantile", metavar="SHARE", type=float, default=0.05, help="with --posterior: share of the foams that may be below the answer (default 0.05)")
     add_jobs(made)
     return made

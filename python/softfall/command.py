@@ -22,6 +22,7 @@ from .errors import Error, InputError, lacking
 
 COMMANDS = {  # module within the package, and what the command does
     "cfh": ("cfh_command", "find the critical fall height: where a_max or HIC reach their limits"),
+    "fit": ("fit_command", "identify a foam from drops (or: fit compression, from compression tests)"),
     "foam": ("foam_command", "convert foam cards of other solvers and back, and show foams"),
     "open": ("open_command", "open the workbench in the browser: form, live sliders, curves, the drop in 3-D"),
     "protocol": ("protocol_program", "run a whole test, simulated or measured, and judge it as a laboratory does"),
@@ -34,13 +35,12 @@ COMMANDS = {  # module within the package, and what the command does
 }
 PROGRAMS = {  # words that are handed over to the program softfall-WORD, and what it does
     "batch": "run a group of a batch, as an engine (Snakemake, Slurm) starts it",
-    "fit": "identify a foam from compression tests or from drops",
     "new": "make a folder with a case that runs as it stands",
     "post": "compute figures and curves from results.h5",
     "pre": "build the model of a drop from a case",
     "solve": "simulate the drop of a model",
 }
-RESUME = ("cfh", "protocol", "rows", "run", "sweep")  # commands that resume where they were interrupted
+RESUME = ("cfh", "fit", "protocol", "rows", "run", "sweep")  # commands that resume where they were interrupted
 USAGE = 64  # exit code of a wrong command line, as of the C programs
 
 
@@ -214,6 +214,8 @@ def main(arguments: Sequence[str]) -> int:
     if name in ("-V", "--version"):
         print(f"softfall {library.version()}")
         return 0
+    if name == "fit" and list(arguments[1:2]) == ["compression"]:
+        return _hand_over("softfall-fit", arguments[1:])
     if name in PROGRAMS:
         return _hand_over(f"softfall-{name}", arguments[1:])
     if name not in COMMANDS:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 import ctypes as c
 import functools
+import json
 import locale
 import os
 import re
 import threading
-from typing import Any, Iterator, NamedTuple, Sequence
+from typing import Any, Iterator, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
@@ -41,6 +42,8 @@ def _load() -> c.CDLL:
             library.softfall_record_curve.restype = library.softfall_material_curve.restype = c.c_int64
             library.softfall_material_parameters.restype = c.c_char_p
             library.softfall_material_parameters.argtypes = library.softfall_material_free.argtypes = [c.c_void_p]
+            library.softfall_form_parameters.restype, library.softfall_form_start.restype = c.c_char_p, None
+            library.softfall_form_parameters.argtypes = library.softfall_form_free.argtypes = [c.c_void_p]
             library.softfall_record_grade.argtypes = library.softfall_record_free.argtypes = [c.c_void_p]
             return library
     raise Error(f"there is no library libsoftfall-build.so in {prefix}/lib, beside the programs of {programs.folder()}", 3)
@@ -143,6 +146,9 @@ class Material:
             if origin == "given":
                 self.given.add(name)
         self.curves: list[tuple[float, Array, Array]] = []  # rate in 1/s (0: there is one curve), strain, stress in Pa
+        self._read_curves()
+
+    def _read_curves(self) -> None:
         rate, strain, stress = c.c_double(), c.POINTER(c.c_double)(), c.POINTER(c.c_double)()
         while count := _load().softfall_material_curve(self._handle, c.c_int(len(self.curves)), c.byref(rate), c.byref(strain), c.byref(stress)):
             self.curves.append((rate.value, np.array(strain[:count]), np.array(stress[:count])))
@@ -156,6 +162,85 @@ class Material:
         stress: Array = np.empty_like(strain)
         _call("softfall_compress", self._handle, c.c_int(free_sides), _array(time), _array(strain), c.c_int64(strain.size), _array(stress))
         return stress
+
+    def cushion(self, static_stress: float, thickness: float, drop_height: float) -> float:
+        """softfall_cushion: peak deceleration (g) of a flat mass on a block."""
+        peak = c.c_double()
+        _call("softfall_cushion", self._handle, c.c_double(static_stress), c.c_double(thickness), c.c_double(drop_height), c.byref(peak))
+        return peak.value
+
+
+class Parameter(NamedTuple):
+    """A parameter of a foam, as softfall_form_parameters has it."""
+
+    name: str
+    unit: str
+    description: str
+    quantity: str
+    rate: str
+    per_unit: float
+    low: float
+    high: float
+    prior_sd: float
+    used: bool
+    usual: bool
+
+
+class Foam(Material):
+    """A foam in memory, of a form's parameters."""
+
+    def __init__(self, handle: c.c_void_p) -> None:
+        self._handle, self._free = handle, _load().softfall_material_free
+        self.curves = []
+        self._read_curves()
+
+    @property
+    def handle(self) -> c.c_void_p:
+        return self._handle
+
+    def write(self, folder: str, name: str, title: str, comments: str) -> None:
+        """softfall_material_write: folder/name.cfg with its curves."""
+        with _one_at_a_time:
+            _call("softfall_material_write", self._handle, os.fsencode(folder), name.encode(), title.encode(), comments.encode())
+
+
+class Form:
+    """A form of the loading curve on a start material: softfall_form_read. Values are arrays in SI units, in the order of `parameters`."""
+
+    def __init__(self, material: str, curve: str, solid_density: float) -> None:
+        self._handle, self._free = c.c_void_p(), _load().softfall_form_free
+        with _one_at_a_time:
+            _call("softfall_form_read", os.fsencode(material), curve.encode(), c.c_double(solid_density), c.byref(self._handle))
+        told = json.loads(_load().softfall_form_parameters(self._handle).decode(errors="replace"))
+        self.curve, self.formula, self.density, self.curves = str(told["curve"]), str(told["formula"]), float(told["density"]), int(told["curves"])
+        self.parameters = [Parameter(**entry) for entry in told["parameters"]]
+        self.index = {p.name: k for k, p in enumerate(self.parameters)}
+
+    def __del__(self) -> None:
+        if hasattr(self, "_free"):
+            self._free(self._handle)
+
+    def start(self, given: Mapping[str, float], unknown: Sequence[str]) -> Array:
+        """softfall_form_start: values of the start material and medians of the priors, but for those that are given."""
+        values = np.array([given.get(p.name, np.nan) for p in self.parameters])
+        flags = (c.c_int * len(self.parameters))(*(p.name in unknown for p in self.parameters))
+        made = np.empty_like(values)
+        _load().softfall_form_start(self._handle, _array(values), flags, _array(made))
+        return made
+
+    def foam(self, values: Any, informed: float = 0.0) -> Foam:
+        """softfall_form_material: the foam of these values; a NumericError says why they make none."""
+        made, numbers = c.c_void_p(), np.ascontiguousarray(values, dtype=float)
+        _call("softfall_form_material", self._handle, _array(numbers), c.c_double(informed), c.byref(made))
+        return Foam(made)
+
+
+def reading(time: Any, deceleration: Any, chain: Sequence[float], channel_class: float) -> tuple[Array, float]:
+    """softfall_reading: the curve as an instrument reads it, and the instant of contact (s)."""
+    read, contact = np.empty_like(deceleration), c.c_double()
+    _call("softfall_reading", _array(time), _array(deceleration), c.c_int64(time.size), (c.c_double * 3)(*chain), c.c_double(channel_class), _array(read),
+          c.byref(contact))
+    return read, contact.value
 
 
 def hic(time: Any, deceleration: Any, window: float) -> tuple[float, float, float]:

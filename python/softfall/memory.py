@@ -164,6 +164,14 @@ class Inputs:
         """True if all drops of the series have the missile of the case, but for their intervals."""
         return not any(_load().softfall_case_drop_get(self._case, k).own for k in range(1, len(self.counted()) + 1))
 
+    def intervals(self) -> list[float]:
+        """Returns the pause (s) before each drop of the series; that of the first one means nothing."""
+        return [float(_load().softfall_case_drop_get(self._case, k).interval) for k in range(1, len(self.counted()) + 1)]
+
+    def build(self, share: str) -> c.c_void_p:
+        """Builds the model of the first drop, which is the caller's; meshes are shared in a folder."""
+        return self._build(1, share, False)
+
     def data_ends(self) -> list[float]:
         """Returns the strain at which the data of the foam end, of each layer."""
         ends = (float(_load().softfall_case_data_end(self._case, k)) for k in itertools.count())

@@ -179,7 +179,7 @@ def compression_stresses(folder: Path, rate: float, strains: Sequence[float]) ->
 def _tests(p: Protocol, posterior: Path, notes: list[str]) -> list[advice.Test]:
     """Returns the compression tests of a protocol, as the draws expect them."""
     try:
-        return [advice.Test(f"a compression test at {test.rate:g} 1/s, for softfall-fit drop", compression_stresses(posterior, test.rate, advice.TEST_STRAINS),
+        return [advice.Test(f"a compression test at {test.rate:g} 1/s, for softfall fit", compression_stresses(posterior, test.rate, advice.TEST_STRAINS),
                             test.error, test.cost) for test in p.tests]
     except InputError as error:
         notes.append(f"compression tests are not weighed: {error}")

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any, Iterator, NamedTuple
+from typing import Any, Callable, NamedTuple
 
 from . import memory, programs
 from .errors import Error, failure
@@ -61,14 +61,14 @@ def simulate(task: Task, share: str) -> Answer:
 class _Worker:
     """A process that simulates one task at a time."""
 
-    def __init__(self, share: str) -> None:
+    def __init__(self, share: str, module: str) -> None:
         package = str(Path(__file__).resolve().parent.parent)
         path = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONPATH": path, "SF_BIN_DIR": str(programs.folder())}
-        self._process = subprocess.Popen([sys.executable, "-m", "softfall.worker", share], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        self._process = subprocess.Popen([sys.executable, "-m", module, share], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                          start_new_session=True, env=environment)
 
-    def ask(self, task: Task) -> Answer:
+    def ask(self, task: Any) -> Answer:
         assert self._process.stdin and self._process.stdout
         try:
             self._process.stdin.write(json.dumps(task).encode() + b"\n")
@@ -98,8 +98,8 @@ class _Worker:
 class Pool:
     """Workers side by side; a context manager, at whose end they go."""
 
-    def __init__(self, jobs: int, share: Path) -> None:
-        self.jobs, self._share = jobs, str(share)
+    def __init__(self, jobs: int, share: Path, module: str = "softfall.worker") -> None:
+        self.jobs, self._share, self._module = jobs, str(share), module
         self._free: queue.SimpleQueue[_Worker | None] = queue.SimpleQueue()
         self._all: list[_Worker] = []
         self._ended = False
@@ -116,12 +116,12 @@ class Pool:
             worker.end()
         self._threads.shutdown(wait=True, cancel_futures=True)
 
-    def _ask(self, task: Task) -> Answer:
+    def _ask(self, task: Any) -> Answer:
         worker = self._free.get()
         if self._ended:
             raise failure("the study ends", 130)
         if worker is None:
-            worker = _Worker(self._share)
+            worker = _Worker(self._share, self._module)
             self._all.append(worker)
         answer: Answer | None = None
         try:
@@ -134,26 +134,21 @@ class Pool:
                 self._all.remove(worker)
             self._free.put(None if broken else worker)
 
-    def start(self, task: Task) -> concurrent.futures.Future[Answer]:
+    def start(self, task: Any) -> concurrent.futures.Future[Answer]:
         """Simulates a task as soon as a worker is free."""
         return self._threads.submit(self._ask, task)
 
 
-def _requests() -> Iterator[Task]:
-    for line in sys.stdin:
-        yield Task(*json.loads(line))
-
-
-def main(share: str) -> None:
+def answer(solve: Callable[[list[Any]], Answer]) -> None:
     """Answers requests until there are no more: the end of the process that asks is the end of its workers."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # what a library prints is no answer
     memory.hold_units()
-    for task in _requests():
-        answers.write(json.dumps(simulate(task, share)) + "\n")
+    for line in sys.stdin:
+        answers.write(json.dumps(solve(json.loads(line))) + "\n")
         answers.flush()
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    answer(lambda request: simulate(Task(*request), sys.argv[1]))

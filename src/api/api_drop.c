@@ -6,6 +6,7 @@
 #include "io/h5_data.h"
 #include "model/model_check.h"
 #include "model/model_io.h"
+#include "post/figures/compare.h"
 #include "post/figures/verdict.h"
 #include "solver/set.h"
 #include "solver/run/frame.h"
@@ -496,6 +497,34 @@ softfall_status softfall_cfc(const double *time, const double *value, int64_t co
         sf_signal_filter(&curve, filter, &made, &err) == SF_OK)
         for (int64_t i = 0; i < count; i++)
             filtered[i] = sf_series_at(&made, time[i]);
+    return softfall_return(&err, error);
+}
+
+static sf_status read_curve(const sf_series *curve, const double chain[3], double filter, double *read,
+                            double *contact, sf_error *err) {
+    SF_OWNED_BY(sf_series_free) sf_series uniform = {0}, made = {0};
+    const sf_signal_chain passed = {chain[0], chain[1], chain[2]};
+    SF_TRY(check_filter(filter, err));
+    if (!(chain[0] >= 0 && chain[2] >= 0) || (chain[0] > 0 && !(chain[1] > 0 && chain[1] < 1)))
+        return SF_REFUSE(err,
+                         "a mount of %g Hz with damping %g, or a coupling of %g s: frequency and time are "
+                         "from 0 on, damping is between 0 and 1",
+                         chain[0], chain[1], chain[2]);
+    SF_TRY(sf_series_check(curve, "the curve to read", err));
+    SF_TRY(sf_signal_resample(curve, sf_signal_rate(curve), &uniform, err));
+    sf_signal_pass(&passed, &uniform);
+    SF_TRY(sf_signal_filter_cfc(&uniform, filter, &made, err));
+    for (int64_t i = 0; i < curve->count; i++)
+        read[i] = sf_series_at(&made, curve->time[i]);
+    return sf_contact_instant(&made, "the curve to read", 0, contact, err);
+}
+
+softfall_status softfall_reading(const double *time, const double *value, int64_t count,
+                                 const double chain[3], double filter, double *read, double *contact,
+                                 softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    const sf_series curve = borrow(time, value, count);
+    read_curve(&curve, chain, filter, read, contact, &err);
     return softfall_return(&err, error);
 }
 

@@ -4,6 +4,7 @@
 
 #include "case/read.h"
 #include "material/laws.h"
+#include "study/column.h"
 #include <math.h>
 
 softfall_status softfall_material_read(const char *path, double temperature, softfall_material **out,
@@ -67,5 +68,25 @@ softfall_status softfall_compress(const softfall_material *material, int free_si
     if (check_path(&path, &err) == SF_OK && sf_material_law_build(&material->data, &law, &err) == SF_OK)
         sf_material_point_follow(&law, &path, stress, &err);
     sf_material_law_free(&law);
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_cushion(const softfall_material *material, double static_stress, double thickness,
+                                 double drop_height, double *peak_g, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
+    const sf_columns block = {.mass = static_stress / SF_STANDARD_GRAVITY,
+                              .speed = sqrt(2 * SF_STANDARD_GRAVITY * drop_height),
+                              .thickness = thickness,
+                              .count = 1,
+                              .area = {1}};
+    sf_columns_figures figures;
+    *peak_g = NAN;
+    if (!(static_stress > 0 && thickness > 0 && drop_height > 0))
+        SF_REFUSE(&err, "a static stress of %g Pa on %g m from %g m: all three are above 0", static_stress,
+                  thickness, drop_height);
+    else if (sf_material_law_build(&material->data, &law, &err) == SF_OK &&
+             sf_columns_respond(&block, &law, &figures, NULL, &err) == SF_OK)
+        *peak_g = figures.a_max_g;
     return softfall_return(&err, error);
 }

@@ -310,7 +310,8 @@ sf_status sf_program_read_limit(const char *option, const char *text, void *limi
     return SF_OK;
 }
 
-void sf_program_compare_texts(const char *option, const char *before, const char *text) {
+/* Tells of an option KEY=VALUE that a later one of the same key replaces. */
+static void compare_texts(const char *option, const char *before, const char *text) {
     sf_sink sink = sf_program_sink(program_invocation_short_name);
     if (sf_text_contradicts(before, text))
         sf_sink_tell(&sink, SF_WARNING, "%s %s is replaced by the later %s %s", option, before, option, text);
@@ -322,7 +323,7 @@ sf_status sf_program_read_texts(const char *option, const char *text, void *text
     if (all->count == MOST)
         return SF_REFUSE(err, "%d %s options" SF_AT_MOST("%d"), MOST + 1, option, MOST);
     for (int k = 0; k < all->count; k++)
-        sf_program_compare_texts(option, all->text[k], text);
+        compare_texts(option, all->text[k], text);
     all->text[all->count++] = text;
     return SF_OK;
 }

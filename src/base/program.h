@@ -64,9 +64,6 @@ typedef struct sf_option_texts {
 /* Readers. A limit (double), a finite number above 0; a text behind those before it (sf_option_texts). */
 sf_option_reader sf_program_read_limit, sf_program_read_texts;
 
-/* Tells of an option KEY=VALUE that a later one of the same key replaces. */
-void sf_program_compare_texts(const char *option, const char *before, const char *text);
-
 /* Prints "program: sentence" (and the source line when SOFTFALL_DEBUG is set in the environment) to stderr. A
  * standard output that could not be written counts as a failure. Returns the process exit code that belongs
  * to the status. */

@@ -98,30 +98,14 @@ void sf_html_pre(FILE *page, const char *text) {
     put_between(page, "<pre>", text, "</pre>\n");
 }
 
-void sf_html_prose(FILE *page, const char *text) {
-    put_between(page, "<pre class=\"prose\">", text, "</pre>\n");
-}
-
 void sf_html_banner(FILE *page, const char *kind, const char *phrase, const char *format, ...) {
     fprintf(page, "<div class=\"banner %s\">", kind);
     put_between(page, "<b>", phrase, "</b><span>");
     PUT_ARGUMENTS(page, "", format, "</span></div>\n");
 }
 
-void sf_html_tile(FILE *page, const char *kind, const char *title, const char *value, const char *remark) {
-    fprintf(page, "<div class=\"tile %s\">", kind);
-    put_between(page, "<span>", title, "</span><b>");
-    put_between(page, "", value, "</b><span>");
-    put_between(page, "", remark, "</span></div>\n");
-}
-
-FILE *sf_html_division(FILE *page, const char *kind) {
-    fprintf(page, "<div class=\"%s\">\n", kind);
-    return page;
-}
-
 FILE *sf_html_block(FILE *page, const char *heading) {
-    sf_html_division(page, "block");
+    fputs("<div class=\"block\">\n", page);
     sf_html_heading(page, heading);
     return page;
 }

@@ -19,26 +19,18 @@ void sf_html_heading(FILE *page, const char *text);
 void sf_html_paragraph(FILE *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void sf_html_note(FILE *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void sf_html_pre(FILE *page, const char *text);
-void sf_html_prose(FILE *page, const char *text);
 
 /* The line at the top that judges all that follows. `kind`: "good", "fair", "bad" or "plain". */
 void sf_html_banner(FILE *page, const char *kind, const char *phrase, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* A <div> of this class, which ends with the block of the statement. "tiles": a few figures in large type;
- * "columns ", "columns narrow", "columns wide": parts side by side of equal widths, or the first is; "block":
- * a part that is not broken between pages, which SF_HTML_BLOCK begins with a heading. */
-#define SF_HTML_DIVISION(page, kind) SF_HTML_SCOPE(sf_html_division(page, kind), __LINE__)
+/* A part that is not broken between pages, with a heading; it ends with the block of the statement. */
 #define SF_HTML_BLOCK(page, heading) SF_HTML_SCOPE(sf_html_block(page, heading), __LINE__)
 #define SF_HTML_SCOPE(page, line) SF_HTML_SCOPE_OF(page, line)
 #define SF_HTML_SCOPE_OF(page, line)                                                                         \
     __attribute__((unused)) SF_OWNED_BY(sf_html_division_end) FILE *sf_scope_##line = page
-FILE *sf_html_division(FILE *page, const char *kind);
 FILE *sf_html_block(FILE *page, const char *heading);
 void sf_html_division_end(FILE **page);
-
-/* A figure in large type, one of the tiles. `kind` as above; `remark` below the value. */
-void sf_html_tile(FILE *page, const char *kind, const char *title, const char *value, const char *remark);
 
 /* A figure of an SVG element; with `svg` NULL the caption says what is missing and why. */
 void sf_html_figure(FILE *page, const char *svg, const char *format, ...)

@@ -55,7 +55,8 @@ static void copy_value(char *to, size_t size, const char *begin, const char *end
         *write = '\0';
 }
 
-bool sf_origin_next(const char **text, sf_origin_key *key) {
+/* The line at `*text`, and the next one there; false at the end. */
+static bool next_key(const char **text, sf_origin_key *key) {
     const char *line = *text;
     if (!*line)
         return false;
@@ -75,8 +76,8 @@ bool sf_origin_next(const char **text, sf_origin_key *key) {
     return true;
 }
 
-bool sf_origin_find(const char *parameters, const char *name, sf_origin_key *key) {
-    while (sf_origin_next(&parameters, key))
+static bool find_key(const char *parameters, const char *name, sf_origin_key *key) {
+    while (next_key(&parameters, key))
         if (strcmp(key->name, name) == 0)
             return true;
     return false;
@@ -86,67 +87,5 @@ const char *const sf_origin_report_keys[SF_ORIGIN_REPORT_KEYS] = {"sample", "lab
 
 bool sf_origin_find_report(const char *parameters, const char *name, sf_origin_key *key) {
     SF_PRINTED(full, 64, "report.%s", name);
-    return sf_origin_find(parameters, full, key) && key->given;
-}
-
-static void put_comment(FILE *out, const char *begin, const char *end) {
-    begin += strspn(begin, " ");
-    fprintf(out, "%.*s\n", (int)(end - begin), begin);
-}
-
-/* True of the comment that stands where a case includes a file, from begin to end. */
-static bool is_included(const char *begin, const char *end) {
-    const size_t before = strlen(SF_INCLUDED_BEGIN), behind = strlen(SF_INCLUDED_END);
-    return (size_t)(end - begin) > before + behind && strncmp(begin, SF_INCLUDED_BEGIN, before) == 0 &&
-           strncmp(end - behind, SF_INCLUDED_END, behind) == 0;
-}
-
-/* Comments from `line` on to a closing brace, NULL: none; `prefix` stands before each line. */
-static char *collect(const char *line, const char *prefix) {
-    size_t length, before = strlen(prefix);
-    SF_TEXT_STREAM(out, text, size);
-    if (!out)
-        return NULL;
-    for (; line && *line; line += length + (line[length] == '\n')) {
-        length = strcspn(line, "\n");
-        if (strncmp(line, prefix, before) != 0)
-            break;
-        const char *p = line + before + strspn(line + before, " \t");
-        if (*p == '}')
-            break;
-        if (*p == '#' && !is_included(line + before, line + length))
-            put_comment(out, p + 1, line + length);
-    }
-    return sf_text_close(out, &text);
-}
-
-/* The line after the last one that begins so; NULL if none does. */
-static const char *after_last(const char *text, const char *begin) {
-    const char *found = NULL;
-    for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n')
-        if (strncmp(line, begin, strlen(begin)) == 0)
-            found = line + strcspn(line, "\n");
-    return found ? found + (*found == '\n') : NULL;
-}
-
-/* The line after the first one below `text` whose first word is `name`; NULL if there is none. */
-static const char *after_name(const char *text, const char *name) {
-    size_t length = strlen(name);
-    for (const char *line = text; line && *line; line += strcspn(line, "\n"), line += *line == '\n') {
-        const char *word = line + strspn(line, " \t");
-        if (strncmp(word, name, length) == 0 && strchr(" \t:=\n", word[length]))
-            return line + strcspn(line, "\n") + (line[strcspn(line, "\n")] == '\n');
-    }
-    return NULL;
-}
-
-char *sf_origin_material(const char *case_text, const char *layer) {
-    SF_PRINTED(replacing, SF_ORIGIN_NAME_SIZE + 32, layer ? "# --set materials.%s=@" : "# --set material%s=@",
-               layer ? layer : "");
-    const char *replaced = after_last(case_text, replacing);
-    if (replaced)
-        return collect(replaced, "#     ");
-    return collect(layer ? after_name(after_last(case_text, "materials"), layer)
-                         : after_last(case_text, "material"),
-                   "");
+    return find_key(parameters, full, key) && key->given;
 }

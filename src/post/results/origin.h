@@ -17,18 +17,8 @@ typedef struct sf_origin_key {
     bool given;      /* in the case; else the default */
 } sf_origin_key;
 
-/* The line at `*text`, and the next one there; false at the end. */
-bool sf_origin_next(const char **text, sf_origin_key *key);
-/* The line of that name. */
-bool sf_origin_find(const char *parameters, const char *name, sf_origin_key *key);
-
 /* The keys of the group `report` of a case, words about the test. */
 enum { SF_ORIGIN_REPORT_KEYS = 3 };
 extern const char *const sf_origin_report_keys[SF_ORIGIN_REPORT_KEYS];
 /* The line of report.NAME; false if the case does not give it. */
 bool sf_origin_find_report(const char *parameters, const char *name, sf_origin_key *key);
-
-/* The comments in the case's group material (of the file that --set put in its place), without '#', a line
- * each; from malloc, owned by the caller; "" if there are none, NULL only without memory. `layer`: the
- * comments of its group in `materials`; NULL: of the one material. */
-char *sf_origin_material(const char *case_text, const char *layer);

@@ -23,7 +23,8 @@ sf_foam_parameter sf_parameter_find(const char *name) {
 const char *const sf_form_rate_names[] = {"none", "factor", "maxwell", "both"};
 
 sf_form_rate sf_form_rate_of(sf_foam_parameter p) {
-    if (p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE)
+    if (p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE ||
+        p == SF_PARAMETER_RATE_FILTER_TIME)
         return SF_FORM_RATE_FACTOR;
     return p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1 ? SF_FORM_RATE_MAXWELL : SF_FORM_RATE_NONE;
 }
@@ -211,6 +212,7 @@ static const struct {
                {SF_PARAMETER_ETA, offsetof(sf_foam_card, kelvin_viscosity)},
                {SF_PARAMETER_RATE_FACTOR, offsetof(sf_foam_card, rate_factor)},
                {SF_PARAMETER_RATE_REFERENCE, offsetof(sf_foam_card, rate_reference)},
+               {SF_PARAMETER_RATE_FILTER_TIME, offsetof(sf_foam_card, rate_filter_time)},
                {SF_PARAMETER_RELOAD, offsetof(sf_foam_card, memory.reload)},
                {SF_PARAMETER_DRIFT, offsetof(sf_foam_card, memory.drift)},
                {SF_PARAMETER_RECOVERY, offsetof(sf_foam_card, memory.recovery)}};

@@ -47,6 +47,7 @@
     X(ETA, "eta", SF_VISCOSITY, "Pa s", 1, 1e-3, 1e6, 1, "Kelvin viscosity") \
     X(RATE_FACTOR, "rate_factor", NONE, "", 1, 1e-4, 10, 0.7, "growth of the stress with each decade of the strain rate") \
     X(RATE_REFERENCE, "rate_reference", SF_RATE, "1/s", 1, 1e-9, 1e6, 0.7, "strain rate up to which the curve holds as it is") \
+    X(RATE_FILTER_TIME, "rate_filter_time", SF_TIME, "ms", 1e-3, 1e-6, 1e-2, 0.7, "time constant by which the rate factor follows the strain rate") \
     X(RELOAD, "reload", NONE, "", 1, 1e-3, 1, 0.5, "part that a second loading has of what unloading took (material.memory)") \
     X(DRIFT, "drift", NONE, "", 1, 1e-4, 10, 1, "fall of reload from loading to loading") \
     X(RECOVERY, "recovery", NONE, "", 1, 1e-4, 1, 1, "part of the softening that a decade of time at rest takes back")
@@ -163,7 +164,7 @@ double sf_form_dense_strain(double solid);
  * fraction Phi (Gibson and Ashby); densification with its pole at e_D = 1 - 1.4 Phi. The initial slope is E.
  * With Phi = 0 both poles are at 1. */
 typedef struct sf_gas_curve {
-    double modulus;  /* Pa, E > p0/(1 - Phi) */
+    double modulus;  /* Pa, E */
     double yield;    /* Pa, s0 > 0 */
     double pressure; /* Pa, p0 */
     double factor;   /* Pa, B >= 0 */

@@ -1,0 +1,542 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What else agrees with the measurements: the posterior of a model by an emulator of drops, a chain on it, and draws that are simulated and weighed.
+
+An emulator (a quadratic with a Gaussian process on what it leaves) learns the drops in two rounds: of an inflated Laplace approximation, then of draws of a first
+chain. A second chain gives draws, each of which is simulated; their importance weights take away what the emulator still has wrong. Beside the unknowns the chain
+has kappa, the size of the model's other errors: of each number one that all drops share and one of a drop's own, each with a standard deviation of kappa model_sd/sqrt 2.
+The mesh is an unknown, too: a factor on the step from the coarse drop to that of the case.
+"""
+from __future__ import annotations
+
+import logging
+import math
+import warnings
+from dataclasses import dataclass, field
+from typing import Any, Callable, NamedTuple, Sequence
+
+import emcee
+import numpy as np
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.gaussian_process import GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
+
+from ..array import Array
+from ..errors import NumericError
+from ..memory import nine_digits
+from .drops import COARSE, OWN
+from .input import KINDS
+from .search import Found, Problem, _shift
+
+FIRST, SECOND, DRAWS = 100, 80, 120  # foams that are simulated: of the first design, of draws of a first chain, of the last one
+INFLATE = 1.6  # of the Laplace approximation, in standard deviations
+STEPS, BURN, ENSEMBLES = 1600, 500, 2  # of a chain
+KAPPA = 1.0  # scale of the half-normal prior
+MESH_PART = 1 / 3  # of the step to the case's mesh: its error, of order 2
+RIDGE, NEAR = 1e-4, 3  # of the quadratic; neighbours that tell whether a drop fails
+RHAT, EFFECTIVE, PARETO = 1.02, 400.0, 0.7
+LEAVE_DRAWS, OUTPUT_DRAWS, ERRORS = 1500, 200, 16  # of a chain for leave-one-out; files of draws; errors of the responses for each draw
+TAIL = (0.025, 0.05, 0.5, 0.95, 0.975)
+COLLAPSED = math.inf
+logging.getLogger("emcee").setLevel(logging.ERROR)  # the effective size is told by us
+
+
+class _Surface(NamedTuple):
+    """One output over the unknowns: a quadratic, and a Gaussian process on what it leaves."""
+
+    weights: Array
+    points: Array
+    alpha: Array
+    size: float
+    length: float
+    rms: float
+
+    def __call__(self, z: Array) -> Array:
+        made = _basis(z) @ self.weights
+        if self.size > 0:
+            apart = ((z[:, None, :] - self.points[None]) ** 2).sum(axis=2)
+            made = made + self.size * np.exp(-0.5 * apart / self.length**2) @ self.alpha
+        return np.asarray(made)
+
+
+def _basis(z: Array) -> Array:
+    n = z.shape[1]
+    first, second = np.triu_indices(n)
+    return np.concatenate([np.ones((len(z), 1)), z, z[:, first] * z[:, second]], axis=1)
+
+
+def _surface(z: Array, y: Array, process: bool) -> _Surface:
+    """Fits one output to points; the process's length and size follow from the points by their likelihood."""
+    basis = _basis(z)
+    penalty = RIDGE * len(z) * np.eye(basis.shape[1])
+    penalty[:1 + z.shape[1]] = 0.0
+    weights = np.linalg.solve(basis.T @ basis + penalty + 1e-10 * np.eye(basis.shape[1]), basis.T @ y)
+    left: Array = y - basis @ weights
+    scale = float(np.std(left))
+    if not process or scale < 1e-5:
+        return _Surface(weights, z, np.zeros(len(z)), 0.0, 1.0, scale)
+    kernel = ConstantKernel(1.0, (1e-2, 1e2)) * RBF(2.0, (0.5, 20.0)) + WhiteKernel(0.1, (1e-4, 1.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        gp = GaussianProcessRegressor(kernel, random_state=0).fit(z, left / scale)
+    made = _Surface(weights, z, scale * np.asarray(gp.alpha_), float(gp.kernel_.k1.k1.constant_value), float(gp.kernel_.k1.k2.length_scale), 0.0)
+    inverse = np.linalg.inv(gp.L_ @ gp.L_.T)
+    return made._replace(rms=float(scale * np.sqrt(np.mean((np.asarray(gp.alpha_) / np.diag(inverse)) ** 2))))  # leave-one-out
+
+
+def pareto(log_weights: Array) -> tuple[Array, float]:
+    """Returns normalised importance weights whose largest ones are smoothed by a generalised Pareto distribution, and its shape k (Vehtari and others 2024).
+
+    >>> weights, k = pareto(np.zeros(100))
+    >>> bool(np.allclose(weights, 0.01)), k
+    (True, 0.0)
+    """
+    w = np.exp(log_weights - log_weights.max())
+    count = int(min(0.2 * len(w), 3 * math.sqrt(len(w))))
+    order = np.argsort(w)
+    tail, cut = order[-count:], w[order[-count - 1]] if count < len(w) else 0.0
+    over = np.sort(w[tail] - cut)
+    if count < 5 or over[-1] <= 1e-12 * w.max() or over[0] < 0:
+        return w / w.sum(), 0.0
+    quarter = max(over[max(int(count / 4 + 0.5) - 1, 0)], 1e-300)
+    grid = 30 + int(math.sqrt(count))
+    theta = 1 / over[-1] + (1 - np.sqrt(grid / (np.arange(1, grid + 1) - 0.5))) / (3 * quarter)
+    shape = np.array([-np.mean(np.log1p(-t * over)) for t in theta])
+    score = np.array([count * (math.log(t / k) + k - 1) if t / k > 0 else -math.inf for t, k in zip(theta, shape)])
+    part = np.exp(score - score.max())
+    best = float((theta * part).sum() / part.sum())
+    k = float(np.mean(np.log1p(-best * over)))
+    sigma, k = -k / best, (k * count + 5) / (count + 10)
+    p = (np.arange(1, count + 1) - 0.5) / count
+    smooth = sigma * np.expm1(-k * np.log1p(-p)) / k if abs(k) > 1e-9 else -sigma * np.log1p(-p)
+    w[tail[np.argsort(w[tail])]] = np.minimum(cut + smooth, w.max())
+    return w / w.sum(), k
+
+
+def quantiles(values: Array, weights: Array, shares: Sequence[float] = TAIL) -> Array:
+    """Returns weighted quantiles; values may be infinite.
+
+    >>> quantiles(np.array([1.0, 2.0, 3.0]), np.array([1.0, 1.0, 1.0]), [0.5]).tolist()
+    [2.0]
+    """
+    order = np.argsort(values)
+    places = np.cumsum(weights[order]) / weights.sum()
+    return np.asarray(values[order][np.minimum(np.searchsorted(places, np.asarray(shares) - 1e-12), len(values) - 1)])
+
+
+@dataclass
+class Posterior:
+    """The posterior of a model: simulated draws with their weights."""
+
+    found: Found
+    x: Array = field(default_factory=lambda: np.empty((0, 0)))  # draws, the unknowns and ln(kappa)
+    weights: Array = field(default_factory=lambda: np.empty(0))
+    response: list[Array] = field(default_factory=list)  # of each drop [draws][KINDS], ln, on the case's mesh; NaN: fails
+    failed: list[Array] = field(default_factory=list)
+    rhat: float = math.nan
+    effective: float = 0.0
+    pareto_k: float = math.nan
+    rms: float = math.nan
+    left_out: list[tuple[float, float]] = field(default_factory=list)  # log predictive density of each measured drop by the others, and Pareto k
+
+    def __post_init__(self) -> None:
+        p = self.problem = self.found.problem
+        self.rows = [(d, k) for d, drop in enumerate(p.measured) for k, kind in enumerate(KINDS) if kind.key in drop.value]
+        self.data = np.array([math.log(p.measured[d].value[KINDS[k].key]) for d, k in self.rows])
+        self.noise = np.diag([p.measured[d].sd[KINDS[k].key] ** 2 for d, k in self.rows])
+        self.targets = [(d, k) for d, drop in enumerate(p.drops) if drop.predicted for k in range(len(KINDS))]
+        step = _shift(p, self.found.x, COARSE, OWN)
+        self.offset = [one[:len(KINDS)] for one in step]
+        places = [*self.rows, *self.targets]
+        sd = np.array([KINDS[k].model_sd for _, k in places])
+        kinds, drops = np.array([k for _, k in places]), np.array([d for d, _ in places])
+        share = (kinds[:, None] == kinds[None]) * (0.5 + 0.5 * (drops[:, None] == drops[None]))
+        mesh = MESH_PART * np.array([self.offset[d][k] for d, k in places])
+        self.model_error, self.mesh_error = share * np.outer(sd, sd), np.outer(mesh, mesh)
+        self.kappa_start = math.log(0.5)
+
+    def error(self, kappa: float) -> Array:
+        """Returns the covariance of the errors of the model, of measured numbers and of those to predict."""
+        return np.asarray(kappa**2 * self.model_error + self.mesh_error)
+
+    # ---- densities
+
+    def prior(self, x: Array) -> Array:
+        """Returns ln of the prior density on the axes of the search, and of kappa."""
+        p, logs = self.problem, np.array([self.problem.logarithm(row) for row in x[:, :-1]])
+        made = -0.5 * (((logs - p.center) / p.sd) ** 2).sum(axis=1) + np.log(np.maximum(np.array([p.log_slope(row) for row in x[:, :-1]]), 1e-300)).sum(axis=1)
+        kappa = np.exp(np.minimum(x[:, -1], 5.0))
+        made += x[:, -1] - 0.5 * (kappa / KAPPA) ** 2
+        inside = np.all((x[:, :-1] > p.low) & (x[:, :-1] < p.high), axis=1) & (x[:, -1] > -7)
+        return np.asarray(np.where(inside, made, -math.inf))
+
+    def likelihood(self, y: Array, rest: Array, kappa: Array) -> Array:
+        """Returns ln of the likelihood of ln(numbers) [points][rows], with half the sum of squares of all other residuals."""
+        made = -0.5 * rest
+        n = len(self.rows)
+        if n:
+            cover = self.noise + kappa[:, None, None] ** 2 * self.model_error[:n, :n] + self.mesh_error[:n, :n]
+            off = self.data - y
+            made = made - 0.5 * (np.einsum("si,si->s", off, np.linalg.solve(cover, off[..., None])[..., 0]) + np.linalg.slogdet(cover)[1])
+        return np.asarray(np.where(np.isfinite(made), made, -math.inf))
+
+    # ---- simulated foams
+
+    def simulate(self, x: Array) -> tuple[list[Array], list[Array], Array]:
+        """Returns of each drop the responses at points on the case's mesh, and whether it fails; and the sum of squares of samples and tests."""
+        p, count = self.problem, len(self.problem.drops)
+        outcomes: list[Any] = [None] * len(x)
+        good = [k for k, row in enumerate(x) if p._makes_foam(row[:-1])]
+        for k, made in zip(good, p.outcomes([(x[k, :-1], range(count)) for k in good], COARSE)):
+            outcomes[k] = made
+        saved, p.offset = p.offset, {}
+        response = [np.full((len(x), len(KINDS)), math.nan) for _ in range(count)]
+        failed = [np.ones(len(x), dtype=bool) for _ in range(count)]
+        rest = np.zeros(len(x))
+        for s, made in enumerate(outcomes):
+            if made is None:
+                continue
+            for d, one in enumerate(made):
+                failed[d][s] = bool(one.failure)
+                if one.failure:
+                    continue
+                y = p.shifted(one, d, COARSE)
+                response[d][s] = y[:len(KINDS)] + self.offset[d]
+                curve = p.drops[d].curve
+                if curve:
+                    rest[s] += float((((y[len(KINDS) + 1:] - curve.value / curve.peak) / curve.sd) ** 2).sum())
+            tests = p.tests(x[s, :-1])
+            rest[s] += float(tests @ tests)
+        p.offset = saved
+        return response, failed, rest
+
+    def exact(self, x: Array, response: list[Array], failed: list[Array], rest: Array) -> Array:
+        """Returns ln of the likelihood of simulated points."""
+        y = np.stack([response[d][:, k] for d, k in self.rows], axis=1) if self.rows else np.empty((len(x), 0))
+        dead = np.zeros(len(x), dtype=bool)
+        for d in range(len(self.problem.measured)):
+            dead |= failed[d]
+        made = self.likelihood(np.nan_to_num(y), rest, np.exp(x[:, -1]))
+        return np.asarray(np.where(dead | ~np.isfinite(y).all(axis=1), -math.inf, made))
+
+
+class Emulator:
+    """The measured numbers of a model over its unknowns, learnt from simulated points."""
+
+    def __init__(self, posterior: Posterior, x: Array, response: list[Array], failed: list[Array], rest: Array) -> None:
+        self.of, self.mid, self.scale = posterior, x[:, :-1].mean(axis=0), np.maximum(x[:, :-1].std(axis=0), 1e-6)
+        z = (x[:, :-1] - self.mid) / self.scale
+        p = posterior.problem
+        first = len(p.model.unknown) + len(p.chain)
+        dead = np.zeros(len(x), dtype=bool)
+        for d in range(len(p.measured)):
+            dead |= failed[d]
+        self.points, self.dead = z, dead
+        self.columns, self.surfaces = [], []
+        for d, k in posterior.rows:
+            columns = [c for c in range(z.shape[1]) if c < first or p.speeds[c - first] == d]
+            y, good = response[d][:, k], ~dead & np.isfinite(response[d][:, k])
+            if good.sum() < z.shape[1] + 5:
+                raise NumericError(f"the posterior of {p.model.label}: of {len(x)} foams near the best one {int((~good).sum())} make the drop {p.measured[d].name} fail", 5)
+            self.columns.append(columns)
+            self.surfaces.append(_surface(z[good][:, columns], y[good], True))
+        self.rest = _surface(z[~dead], rest[~dead], True) if np.any(rest > 0) else None
+        self.rms = max((one.rms for one in self.surfaces), default=0.0)
+
+    def density(self, x: Array) -> Array:
+        """Returns ln of the posterior density, by the emulator."""
+        prior = self.of.prior(x)
+        made = np.full(len(x), -math.inf)
+        keep = np.isfinite(prior)
+        if keep.any():
+            made[keep] = prior[keep] + self.likelihood(x[keep])
+        return made
+
+    def numbers(self, x: Array) -> Array:
+        z = (x[:, :-1] - self.mid) / self.scale
+        return np.stack([one(z[:, columns]) for one, columns in zip(self.surfaces, self.columns)], axis=1) if self.surfaces else np.empty((len(x), 0))
+
+    def likelihood(self, x: Array) -> Array:
+        z = (x[:, :-1] - self.mid) / self.scale
+        rest = np.maximum(self.rest(z), 0.0) if self.rest else np.zeros(len(x))
+        made = self.of.likelihood(self.numbers(x), rest, np.exp(x[:, -1]))
+        if self.dead.any():  # where most neighbours fail the foam fails
+            apart = ((z[:, None, :] - self.points[None]) ** 2).sum(axis=2)
+            near = np.argsort(apart, axis=1)[:, :NEAR]
+            made = np.where(self.dead[near].mean(axis=1) > 0.5, -math.inf, made)
+        return np.asarray(made)
+
+
+def _chain(emulator: Emulator, begin: Array, seed: int) -> tuple[Array, float, float]:
+    """Returns states of a chain of an ensemble sampler, the largest R-hat over ensembles and parameters, and the least effective size."""
+    n, kept, sizes = begin.shape[1], [], []
+    walkers = max(2 * n + 2, 32)
+    for k in range(ENSEMBLES):
+        random = np.random.default_rng(seed + k)
+        sampler = emcee.EnsembleSampler(walkers, n, emulator.density, vectorize=True, moves=[(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)])
+        sampler._random.seed(int(random.integers(2**31)))
+        start = begin[random.choice(len(begin), walkers, replace=len(begin) < walkers)] + 1e-3 * random.standard_normal((walkers, n))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            sampler.run_mcmc(start, STEPS, skip_initial_state_check=True)
+            chain = sampler.get_chain(discard=BURN)
+            times = emcee.autocorr.integrated_time(chain, quiet=True)
+        sizes.append(chain.shape[0] * walkers / np.maximum(times, 1.0))
+        kept.append(chain)
+    halves = [half.reshape(-1, n) for chain in kept for half in np.array_split(chain, 2)]
+    within, means = np.mean([half.var(axis=0) for half in halves], axis=0), np.array([half.mean(axis=0) for half in halves])
+    rhat = np.sqrt(1 + means.var(axis=0, ddof=1) / np.maximum(within, 1e-30))
+    return np.concatenate([chain.reshape(-1, n) for chain in kept]), float(rhat.max()), float(np.sum(sizes, axis=0).min())
+
+
+def infer(found: Found, tell: Callable[[str], None]) -> Posterior:
+    """Samples the posterior of a model that was fitted."""
+    made, p = Posterior(found), found.problem
+    random, n = np.random.default_rng(p.given.seed), len(found.x)
+    covariance = found.covariance / found.scale**2
+    cap = p.sd / np.maximum(p.log_slope(found.x), 0.05)  # no wider than the prior
+    root = np.linalg.cholesky(covariance + 1e-12 * np.eye(n))
+    z = np.clip(random.standard_normal((FIRST, n)), -2.5, 2.5)
+    spread = np.clip(INFLATE * z @ root.T, -2.5 * cap, 2.5 * cap)
+    design = np.column_stack([np.clip(found.x + spread, p.low + 1e-6, p.high - 1e-6), made.kappa_start + 0.5 * random.standard_normal(FIRST)])
+    design[0, :-1] = found.x
+    response, failed, rest = made.simulate(design)
+    for turn in range(2):
+        emulator = Emulator(made, design, response, failed, rest)
+        best = design[np.argsort(-emulator.density(design))[:max(8, len(design) // 3)]]
+        states, made.rhat, made.effective = _chain(emulator, best, p.given.seed + 10 * turn)
+        draws = states[random.choice(len(states), SECOND if turn == 0 else DRAWS, replace=False)]
+        more = made.simulate(draws)
+        if turn == 0:
+            design = np.concatenate([design, draws])
+            response, failed, rest = ([np.concatenate([a, b]) for a, b in zip(response, more[0])], [np.concatenate([a, b]) for a, b in zip(failed, more[1])],
+                                      np.concatenate([rest, more[2]]))
+    made.rms = emulator.rms
+    exact = made.exact(draws, *more)
+    if not np.isfinite(exact).any():
+        raise NumericError(f"the posterior of {p.model.label}: the measured drops of all {DRAWS} draws fail", 5)
+    weights, made.pareto_k = pareto(exact - emulator.likelihood(draws))
+    made.x, made.weights, made.response, made.failed = draws, weights, more[0], more[1]
+    _leave_out(made, emulator, states[random.choice(len(states), min(LEAVE_DRAWS, len(states)), replace=False)])
+    tell(f"  posterior: R-hat {made.rhat:.3f}, effective size {made.effective:.0f}; {DRAWS} simulated draws are worth {1 / float((weights**2).sum()):.0f}, Pareto k {made.pareto_k:.2f}; "
+         f"emulator {100 * made.rms:.2f} %")
+    return made
+
+
+def _leave_out(made: Posterior, emulator: Emulator, states: Array) -> None:
+    """Fills the log predictive density of each measured drop by the others."""
+    off, kappa = made.data - emulator.numbers(states), np.exp(states[:, -1])
+    for d in range(len(made.problem.measured)):
+        own = np.array([k for k, (drop, _) in enumerate(made.rows) if drop == d], dtype=int)
+        others = np.array([k for k, (drop, _) in enumerate(made.rows) if drop != d], dtype=int)
+        if not len(own) or not len(others):
+            continue
+        n = len(made.rows)
+        cover = made.noise + kappa[:, None, None] ** 2 * made.model_error[:n, :n] + made.mesh_error[:n, :n]
+
+        def density(rows: Array) -> Array:
+            part, e = cover[:, rows][:, :, rows], off[:, rows]
+            return np.asarray(-0.5 * (np.einsum("si,si->s", e, np.linalg.solve(part, e[..., None])[..., 0]) + np.linalg.slogdet(part)[1] + len(rows) * math.log(2 * math.pi)))
+        own_density = density(np.arange(n)) - density(others)
+        weights, k = pareto(-own_density)
+        made.left_out.append((float(np.log(np.sum(weights * np.exp(own_density - own_density.max()))) + own_density.max()), k))
+
+
+@dataclass
+class Average:
+    """All models with a posterior, weighed by how well each foretells every measured drop from the others."""
+
+    posteriors: list[Posterior | None]
+    labels: list[str]
+    failures: list[str]
+    seed: int
+
+    def __post_init__(self) -> None:
+        sums = [math.nan if one is None else sum(value for value, _ in one.left_out) for one in self.posteriors]
+        best = max((s for s in sums if not math.isnan(s)), default=math.nan)
+        raw = np.array([0.0 if math.isnan(s) else math.exp(s - best) for s in sums])
+        self.densities, self.weights = sums, (raw / raw.sum()).tolist()
+        self._predict()
+
+    def _errors(self, one: Posterior, s: int, random: np.random.Generator) -> tuple[Array, dict[int, tuple[float, float]]]:
+        """Returns errors of the numbers to predict, given the residuals of a draw, [ERRORS][targets]; and of each kind the shared error and the standard deviation of a drop's own."""
+        n, kappa = len(one.rows), math.exp(one.x[s, -1])
+        whole, off = one.error(kappa), one.data - np.array([one.response[d][s, k] for d, k in one.rows])
+        off = np.nan_to_num(off)
+        gain = np.linalg.solve(one.noise + whole[:n, :n], whole[:n, n:]).T if n else np.zeros((len(one.targets), 0))
+        rest = whole[n:, n:] - gain @ whole[:n, n:]
+        values, vectors = np.linalg.eigh(rest) if len(one.targets) else (np.empty(0), np.empty((0, 0)))
+        errors = gain @ off + random.standard_normal((ERRORS, len(one.targets))) @ (vectors * np.sqrt(np.maximum(values, 0.0))).T
+        kinds = np.array([k for _, k in one.rows])
+        shared = {}
+        for k, kind in enumerate(KINDS):
+            size = 0.5 * (kappa * kind.model_sd) ** 2
+            cross = np.where(kinds == k, size, 0.0) if n else np.empty(0)
+            part = np.linalg.solve(one.noise + whole[:n, :n], cross) if n else np.empty(0)
+            mean, variance = float(part @ off) if n else 0.0, size - (float(part @ cross) if n else 0.0)
+            shared[k] = (mean + math.sqrt(max(variance, 0.0)) * random.standard_normal(), math.sqrt(size))
+        return errors, shared
+
+    def _predict(self) -> None:
+        """Fills values of each number to predict over all models, with their weights."""
+        random = np.random.default_rng(self.seed)
+        self.draws: list[tuple[int, int, float, dict[int, tuple[float, float]]]] = []  # model, draw, weight, errors of kinds
+        values: dict[tuple[int, int], list[Array]] = {}
+        sizes: list[Array] = []
+        for m, one in enumerate(self.posteriors):
+            if one is None or self.weights[m] < 1e-6:
+                continue
+            for s, weight in enumerate(one.weights):
+                if weight * self.weights[m] < 1e-9:
+                    continue
+                errors, shared = self._errors(one, s, random)
+                self.draws.append((m, s, weight * self.weights[m], shared))
+                sizes.append(np.full(ERRORS, weight * self.weights[m] / ERRORS))
+                for t, (d, k) in enumerate(one.targets):
+                    dead = one.failed[d][s] or not math.isfinite(one.response[d][s, k])
+                    made = np.full(ERRORS, COLLAPSED if KINDS[k].above else math.nan) if dead else np.exp(one.response[d][s, k] + errors[:, t])
+                    values.setdefault((d, k), []).append(made)
+        self.values = {key: np.concatenate(parts) for key, parts in values.items()}
+        self.sizes = np.concatenate(sizes) if sizes else np.empty(0)
+
+    @property
+    def first(self) -> Posterior:
+        return next(one for one in self.posteriors if one is not None)
+
+    def quantile(self, d: int, k: int, scatter: float = 0.0) -> Array:
+        """Returns the quantiles TAIL of a number of a drop, of a single pad and drop with their scatter; NaN: not defined."""
+        values, known = self.values[d, k], ~np.isnan(self.values[d, k])
+        if not known.any():
+            return np.full(len(TAIL), math.nan)
+        random = np.random.default_rng(self.seed + d)
+        return quantiles(values[known] * np.exp(scatter * random.standard_normal(int(known.sum()))), self.sizes[known])
+
+    def missing(self, d: int, k: int) -> float:
+        """Returns the share of draws without a value, as the foam collapses."""
+        values = self.values[d, k]
+        return float(self.sizes[~np.isfinite(values)].sum() / self.sizes.sum())
+
+    def warnings(self) -> list[str]:
+        """Returns what makes weights and intervals less sure than they look."""
+        made = []
+        for one, label, weight in zip(self.posteriors, self.labels, self.weights):
+            if one is None or weight < 0.01:
+                continue
+            worst = max((k for _, k in one.left_out), default=0.0)
+            size = 1 / float((one.weights**2).sum())
+            made += [f"{label}: R-hat {one.rhat:.3f} is above {RHAT}"] * (one.rhat > RHAT) + [f"{label}: the effective size of its chain, {one.effective:.0f}, is below {EFFECTIVE:.0f}"] * (one.effective < EFFECTIVE)
+            made += [f"{label}: Pareto k {one.pareto_k:.2f} of its simulated draws is above {PARETO}"] * (one.pareto_k > PARETO) + [f"{label}: Pareto k {worst:.2f} of a drop left out is above {PARETO}, so that its weight is unsure"] * (worst > PARETO)
+            made += [f"{label}: its {len(one.weights)} simulated draws are worth {size:.0f}"] * (size < 30)
+        return made
+
+    def _scatter(self, d: int, k: int) -> float:
+        value = self.first.found.own[d].get(f"{KINDS[k].stem}_scatter") if k < 2 else math.nan
+        return value if math.isfinite(value) else math.nan
+
+    def _parameters(self, one: Posterior) -> list[tuple[str, str, Array]]:
+        """Returns name, unit and quantiles (SI) of the unknowns of a model, and of kappa."""
+        p, made = one.problem, []
+        for k, name in enumerate(p.names):
+            unit = p.model.form.parameters[p.model.form.index[name]].unit if name in p.model.form.index else ""
+            made.append((name, unit, quantiles(np.array([Problem.value(name, v) for v in one.x[:, k]]), one.weights)))
+        return [*made, ("kappa", "", quantiles(np.exp(one.x[:, -1]), one.weights))]
+
+    def summary(self) -> dict[str, Any]:
+        """Returns "inference" of fit.json."""
+        def number(value: float) -> float | None:
+            return nine_digits(value) if math.isfinite(value) else None
+        models: list[dict[str, Any]] = []
+        for one, label, weight, density, failure in zip(self.posteriors, self.labels, self.weights, self.densities, self.failures):
+            if one is None:
+                models.append({"model": label, "weight": 0.0, "failure": failure})
+                continue
+            models.append({"model": label, "weight": number(weight), "log_predictive_density": number(density), "misfit": number(one.found.misfit), "converged": one.found.converged,
+                           "reason": one.found.reason or None, "largest_rhat": number(one.rhat), "least_effective_sample_size": number(one.effective), "simulated_draws": len(one.weights),
+                           "effective_simulated_draws": number(1 / float((one.weights**2).sum())), "pareto_k": number(one.pareto_k), "emulator_rms": number(one.rms),
+                           "left_out": [{"drop": drop.name, "log_density": number(value), "pareto_k": number(k)} for drop, (value, k) in zip(one.problem.measured, one.left_out)],
+                           "parameters": [{"name": name, "unit": "SI", "median": number(q[2]), "low95": number(q[0]), "high95": number(q[4])} for name, _, q in self._parameters(one)]})
+        predictions = []
+        for d, k in self.values:
+            q, scatter = self.quantile(d, k), self._scatter(d, k)
+            single = self.quantile(d, k, scatter) if math.isfinite(scatter) else np.full(len(TAIL), math.nan)
+            predictions.append({"drop": self.first.problem.drops[d].name, "quantity": KINDS[k].key, "median": number(q[2]), "low95": number(q[0]), "high95": number(q[4]), "low90": number(q[1]),
+                                "high90": number(q[3]), "open": None if math.isnan(q[2]) else "above" if math.isinf(q[4]) else "no", "single_drop_low95": number(single[0]),
+                                "single_drop_high95": number(single[4]), "single_drop_low90": number(single[1]), "single_drop_high90": number(single[3]), "share_of_draws_without_value": number(self.missing(d, k))})
+        return {"seed": self.seed, "criteria_reached": not self.warnings(), "warnings": self.warnings(), "weights_by": "leave-one-out predictive density", "models": models, "predictions": predictions}
+
+    def page(self) -> dict[str, Any]:
+        """Returns what report.html shows."""
+        def text(value: float, digits: int) -> str:
+            return "open above" if math.isinf(value) else f"{value:.{digits}f}" if math.isfinite(value) else "–"
+        predictions = []
+        for d, k in self.values:
+            kind, q, scatter = KINDS[k], self.quantile(d, k), self._scatter(d, k)
+            if not kind.always:
+                continue
+            single = self.quantile(d, k, scatter) if math.isfinite(scatter) else None
+            predictions.append([self.first.problem.drops[d].name, kind.heading, text(q[2], kind.digits), f"{text(q[1], kind.digits)} to {text(q[3], kind.digits)}",
+                                f"{text(q[0], kind.digits)} to {text(q[4], kind.digits)}", f"{text(single[0], kind.digits)} to {text(single[4], kind.digits)}" if single is not None else "–",
+                                f"{100 * self.missing(d, k):.1f} %"])
+        models, parameters = [], []
+        for one, label, weight, density in zip(self.posteriors, self.labels, self.weights, self.densities):
+            if one is None:
+                continue
+            models.append([label, f"{weight:.3f}", text(density, 2), text(one.found.misfit, 2), text(max((k for _, k in one.left_out), default=math.nan), 2), text(one.rhat, 3),
+                           text(one.effective, 0), f"{1 / float((one.weights**2).sum()):.0f} of {len(one.weights)}", text(one.pareto_k, 2), f"{100 * one.rms:.2f} %"])
+            parameters += [[label, name, f"{q[2]:.4g}", f"{q[0]:.4g} to {q[4]:.4g}"] for name, _, q in self._parameters(one)]
+        return {"warnings": self.warnings(), "predictions": predictions, "models": models, "parameters": parameters}
+
+    # ---- draws
+
+    def chosen(self) -> list[tuple[int, int, dict[int, tuple[float, float]]]]:
+        """Returns equally likely draws, model by model: model, draw, errors of the responses."""
+        weights = np.array([weight for _, _, weight, _ in self.draws])
+        places = (np.arange(OUTPUT_DRAWS) + 0.5) / OUTPUT_DRAWS
+        at = np.searchsorted(np.cumsum(weights) / weights.sum(), places)
+        return [(self.draws[k][0], self.draws[k][1], self.draws[k][3]) for k in np.minimum(at, len(self.draws) - 1)]
+
+    def table(self) -> list[list[str]]:
+        """Returns posterior.csv: the draws, one a line."""
+        names: dict[str, tuple[str, float]] = {}
+        for one in self.posteriors:
+            for u in one.problem.model.unknown if one else []:
+                about = one.problem.model.form.parameters[one.problem.model.form.index[u.name]]  # type: ignore[union-attr]
+                names[u.name] = (f"{u.name} ({about.unit})" if about.unit else u.name, about.per_unit)
+        rows = [["draw", "model", "kappa", *(heading for heading, _ in names.values()), *(key for kind in KINDS for key in (f"{kind.error}_error", f"{kind.error}_error_sd"))]]
+        for number, (m, s, errors) in enumerate(self.chosen(), 1):
+            one = self.posteriors[m]
+            assert one is not None
+            at = {name: Problem.value(name, one.x[s, k]) for k, name in enumerate(one.problem.names)}
+            rows.append([str(number), self.labels[m], f"{math.exp(one.x[s, -1]):.6g}", *(f"{at[name] / per:.9g}" if name in at else "" for name, (_, per) in names.items()),
+                         *(f"{value:.9g}" for k in range(len(KINDS)) for value in errors[k])])
+        return rows
+
+    def write_draws(self, folder: str, write: Callable[[str, str], None], read: Callable[[str], str]) -> None:
+        """Writes draw-200.cfg ... draw-001.cfg with their curves and response_error: a folder without the first is not complete."""
+        for number, (m, s, errors) in reversed(list(enumerate(self.chosen(), 1))):
+            one = self.posteriors[m]
+            assert one is not None
+            name, p = f"draw-{number:03d}", one.problem
+            p.model.form.foam(p.foam_values(one.x[s, :-1])).write(folder, name, f"Draw {number} of {OUTPUT_DRAWS} of a posterior of softfall fit, equally likely.", "")
+            lines = "".join(f"    {kind.error} = {errors[k][0]:.12g}; {kind.error}_sd = {errors[k][1]:.12g};\n" for k, kind in enumerate(KINDS))
+            write(f"{folder}/{name}.cfg", read(f"{folder}/{name}.cfg") + "# Errors of ln(number) of a drop beside the foam: one that all drops share, and the standard deviation of each drop's "
+                  f"own.\nresponse_error = {{\n{lines}}};\n")
+
+
+def average(found: Sequence[Found | None], labels: Sequence[str], failures: Sequence[str], seed: int, tell: Callable[[str], None]) -> Average:
+    """Samples the posterior of every model that was fitted, and averages them."""
+    posteriors: list[Posterior | None] = []
+    why = list(failures)
+    for k, one in enumerate(found):
+        try:
+            if one is not None:
+                tell(labels[k])
+            posteriors.append(infer(one, tell) if one is not None else None)
+        except (NumericError, np.linalg.LinAlgError) as error:
+            posteriors.append(None)
+            why[k] = str(error)
+            tell(f"  FAILED: {error}")
+    if not any(posteriors):
+        raise NumericError(f"no model has a posterior: {next(text for text in why if text)}; posterior = false fits without one", 5)
+    return Average(posteriors, list(labels), why, seed)
+
+
