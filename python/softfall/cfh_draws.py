@@ -44,7 +44,7 @@ def _flat(settings: Sequence[Mapping[str, Any]], before: str = "") -> dict[str, 
 
 
 def _forms(folder: Path) -> dict[int, str]:
-    """Returns the form of each draw of the fit, from the posterior.csv of softfall-fit beside the folder of draws."""
+    """Returns the form of each draw of the fit, from the posterior.csv of softfall fit beside the folder of draws."""
     path = folder.parent / "posterior.csv"
     if not path.exists():
         return {}

@@ -80,7 +80,7 @@ def answer(s: Study) -> list[str]:
                     *["the mesh, whose error is not known"] * math.isnan(s.spread.mesh_error), "the mount of the accelerometer but for what the draws hold of it"]
         said.append(f"Included: {', '.join(included)}. Not included: {'; '.join([*left_out, 'single pads and drops'])}")
         form = cfh_draws.lowest_form(s.spread, s.spread.parts[cfh_draws.PARTS[2]].at_least)
-        said.append(f"The lowest draws have the form {form}" if form else "The draws do not state the form of their curve: posterior.csv of softfall-fit beside their folder does")
+        said.append(f"The lowest draws have the form {form}" if form else "The draws do not state the form of their curve: posterior.csv of softfall fit beside their folder does")
         if s.spread.bounded:
             said.append(f"{s.spread.bounded} draws stay below the limits up to a drop that cannot be used: the last height before it is taken for theirs, so that "
                         "median and upper end may be too low")

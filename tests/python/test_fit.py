@@ -126,6 +126,34 @@ def test_a_drop_in_memory_is_that_of_the_case_on_every_mesh(lab: Path, tmp_path:
     assert np.max(own.shown()) == pytest.approx(figures["a_max_g"], rel=0.02)
 
 
+def test_later_drops_of_a_series_and_a_measured_curve(lab: Path, tmp_path: Path) -> None:
+    """The second drop of a series in memory is that of the case; a curve read through a mount is compared from contact on."""
+    (lab / "memory.cfg").write_text(START + "memory = { reload = 0.4; recovery = 0.05; };\n")
+    (lab / "series.cfg").write_text(case_text("3.0", 'series: { drops = ( {}, { interval = "60 s"; } ); };').replace("start.cfg", "memory.cfg"))
+    with memory.Inputs(str(lab / "series.cfg"), []) as inputs:
+        drops = inputs.run(str(lab / "share")).drops
+    curve = "".join(f"{t},{40 * math.sin(math.pi * (t - 5) / 20) if 5 < t < 25 else 0}\n" for t in np.arange(0, 40, 0.1))
+    (lab / "curve.csv").write_text("time_ms,acceleration_g\n" + curve)
+    (lab / "later.cfg").write_text(
+        'name = "later"; material = "memory.cfg"; curve_form = "table"; posterior = false; mount = "f = 400 Hz, damping = 0.05"; mount_frequency_sd = 0.1;\n'
+        'unknown = ( { name = "stress_scale"; }, { name = "reload"; } );\n'
+        'drops = ( { name = "second"; case = "series.cfg"; drop = 2; a_max_g = 30.0; }, { name = "curve"; case = "slow.cfg"; curve = "curve.csv"; speed_sd = 0.01; } );\n')
+    given = fit_input.read(str(lab / "later.cfg"))
+    with Bench(given, tmp_path, 1, lambda text: None) as bench:
+        problem = Problem(given, given.models[0], bench)
+        assert problem.names == ["stress_scale", "reload", "mount_frequency", "speed of curve"]
+        mounted, slow = problem.outcomes([(problem.start, [0, 1])], OWN)[0]
+        given.chain = [0.0, 0.5, 0.0]
+        second = problem.outcomes([(problem.start, [0])], OWN)[0][0]
+        residual = problem.residual(problem.start, OWN)
+    assert second.get("a_max_g") == pytest.approx(drops[1].figures["a_max_g"], rel=1e-5) and drops[1].figures["a_max_g"] > drops[0].figures["a_max_g"]
+    assert second.get("a_max_g") < mounted.get("a_max_g") < 1.2 * second.get("a_max_g")  # the mount adds its own oscillation
+    measured = given.drops[1].curve
+    assert measured and measured.peak == pytest.approx(40, rel=0.01) and len(measured.time) > 30
+    assert len(residual) == (1 + 1) + (len(measured.time) + 1) + 4 and np.isfinite(residual).all()
+    assert slow.samples(len(measured.time)).max() == pytest.approx(slow.get("a_max_g"), rel=0.02)
+
+
 def polyethylene() -> str:
     """examples/foams/pe.cfg without a posterior, to be read from another folder."""
     return (ROOT / "examples/foams/pe.cfg").read_text().replace("pe_start.cfg", str(ROOT / "examples/foams/pe_start.cfg")) + "posterior = false;\n"
@@ -195,6 +223,13 @@ def test_cushion_curves_alone(tmp_path: Path) -> None:
     assert softfall.Case(ROOT / "examples/eva50-axisymmetric/case.cfg", {"material": f"@{tmp_path / 'out/pe.cfg'}"})["material.density"]
 
 
+def test_points_of_a_compression_test_are_clear_of_its_ends() -> None:
+    """LEAP, to a strain of 0.6 and back to 0.04: the 22 points of the C program, 2026-11 (tests/reference/fit-drop-joint.json)."""
+    test = fit_input.read(str(ROOT / "examples/fit/joint/leap_joint.cfg")).compressions[0]
+    assert (test.loading, len(test.strain), test.turn) == (12, 22, 0.6)
+    assert test.strain[:test.loading].tolist() == pytest.approx([0.025, *(0.05 * k for k in range(1, 12))]) and test.strain[-1] == pytest.approx(0.1)
+
+
 def test_a_gas_stiffer_than_E_is_no_dead_end(lab: Path) -> None:
     form = library.Form(str(lab / "start.cfg"), "gas", 0.0)
     values = form.start({"p0": 6e5}, [])  # E is 4.1e5 Pa
@@ -218,6 +253,7 @@ DROP = 'drops = ( { name = "a"; case = "slow.cfg"; a_max_g = 30.0; } ); '
     (GOOD + DROP + 'start: { p0 = "3 kg"; };', "p0"),
     (GOOD + DROP + 'start: { q0 = "3 kPa"; };', 'unknown parameter "q0" of the foam'),
     (GOOD + DROP + 'colour = "red";', 'unknown key "colour"'),
+    ('density = "35 kg/m3"; tests = ( { file = "a.csv"; rate = "1 1/s"; } );', "softfall fit compression "),
     (GOOD + DROP + 'forms = ( { curve = "gas"; } ); curve_form = "gas";', "give either forms or curve_form"),
     (GOOD + DROP + 'forms = ( { curve = "gas"; }, { curve = "avalle"; } ); posterior = false;', "posterior must be true"),
     (GOOD + DROP + 'forms = ( { curve = "gas"; rate = "none"; start: { ED = "1 MPa"; }; } );', "term of the rate"),

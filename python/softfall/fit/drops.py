@@ -105,8 +105,11 @@ class Bench:
         now, section, own = (self.overrides(drop, one) for one in (mesh, SECTION, OWN))
         if now == own:
             return False
-        self._meshes[(str(drop.case), mesh)] = own if now == section else section
+        self.set_mesh(drop, mesh, own if now == section else section)
         return True
+
+    def set_mesh(self, drop: Drop, mesh: str, overrides: list[str]) -> None:
+        self._meshes[(str(drop.case), mesh)] = overrides
 
     def _find_mesh(self, drop: Drop, mesh: str) -> list[str]:
         material = f"material=@{self.given.material}"

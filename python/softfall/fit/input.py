@@ -23,7 +23,7 @@ CHAIN = ("mount_frequency", "mount_damping", "coupling")
 TERMS = {"none": (), "factor": ("factor",), "maxwell": ("maxwell",), "both": ("factor", "maxwell")}
 SAMPLE_STEP, SAMPLE_LEVEL, MOST_SAMPLES = 0.5e-3, 0.05, 200  # s, share of the peak, of a measured curve
 COPY = 1e-3  # of the peak: curves that differ by less are one
-STRAIN_STEP, LOW_STRESS, LOW_START = 0.05, 0.02, 0.01  # of a compression test: between points; share of the largest stress in the scatter; late first strain
+STRAIN_STEP, SPREAD, LOW_STRESS = 0.05, 0.01, 0.02  # of a compression test: between points, over which each is a mean; share of the largest stress in the scatter
 SPECIMEN = ("side", "width", "diameter", "area", "thickness")
 TOE_WITHIN, TOE_OVER, TOE_POINTS, MOST_TOE = 0.15, 0.01, 5, 0.1  # strain in which the steepest part is looked for, over which, by how many points; the most that goes
 ENERGIES = 6  # points of a curve of the stress-energy method
@@ -299,18 +299,23 @@ def _compression(group: Setting, number: int) -> Compression:
     top = int(np.argmax(strain))
     if group.flag("toe_correction", False):
         strain = strain - _toe(group, strain[:top + 1], stress[:top + 1])
-    first = strain[0] + LOW_START if strain[0] >= LOW_START else 0.0
-    grid = np.concatenate([[STRAIN_STEP / 2], np.arange(STRAIN_STEP, strain[top] + 1e-9, STRAIN_STEP)])
+    first = strain[0] + SPREAD if strain[0] > SPREAD else 0.0
+    whole = STRAIN_STEP * np.arange(1, math.floor((strain[top] - SPREAD) / STRAIN_STEP + 1e-9) + 1)  # clear of the turn
+    grid = np.concatenate([[STRAIN_STEP / 2], whole])
     grid = grid[grid >= first]
-    up, down = np.argsort(strain[:top + 1], kind="stable"), np.argsort(strain[top:], kind="stable")
-    loading = np.interp(grid, strain[:top + 1][up], stress[:top + 1][up])
-    back = grid[(grid < strain[top] - 1e-9) & (grid > strain[-1] + 1e-9)][::-1] if len(strain) - top > 4 else grid[:0]
-    unloading = np.interp(back, strain[top:][down], stress[top:][down]) if len(back) else back
+    back = whole[whole > strain[-1] + SPREAD + 1e-9][::-1] if len(strain) - top > 2 else whole[:0]
+    loading, unloading = _means(strain[:top + 1], stress[:top + 1], grid), _means(strain[top:], stress[top:], back)
     if len(grid) < 2:
         group.refuse(f"{path}: fewer than two points of loading, {STRAIN_STEP} apart in strain")
     scale = float(stress.max())
     values = np.concatenate([loading, unloading])
     return Compression(name, rate, np.concatenate([grid, back]), values, len(grid), float(strain[top]), sd * np.hypot(values, LOW_STRESS * scale), reading.words)
+
+
+def _means(strain: Array, stress: Array, at: Array) -> Array:
+    """Returns means of a branch over a little strain on each side."""
+    order = np.argsort(strain, kind="stable")
+    return np.asarray(np.mean([np.interp(at + SPREAD * k / 4, strain[order], stress[order]) for k in range(-4, 5)], axis=0)) if len(at) else at
 
 
 def _toe(group: Setting, strain: Array, stress: Array) -> float:
@@ -523,6 +528,8 @@ def _coarse(root: Setting, measured: bool) -> list[str]:
 def read(path: str) -> Input:
     """Reads and checks the file of a fit with all that it names; InputError: file, line and what is wrong."""
     root = settings.read(path)
+    if root.get("tests"):
+        root.member("tests").refuse(f"compression tests alone are fitted by another command: softfall fit compression {path} -o DIR")
     root.names(KEYS)
     compressions = [_compression(entry, k) for k, entry in enumerate(root.groups("compressions", MOST_TESTS) if root.get("compressions") else [], 1)]
     cushions = [_cushion(entry, k) for k, entry in enumerate(root.groups("cushions", MOST_TESTS) if root.get("cushions") else [], 1)]

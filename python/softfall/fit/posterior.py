@@ -25,7 +25,7 @@ from ..errors import NumericError
 from ..memory import nine_digits
 from .drops import COARSE, OWN
 from .input import KINDS
-from .search import Found, Problem, _shift
+from .search import Found, Problem, shift_of
 
 FIRST, SECOND, DRAWS = 100, 80, 120  # foams that are simulated: of the first design, of draws of a first chain, of the last one
 INFLATE = 1.6  # of the Laplace approximation, in standard deviations
@@ -144,7 +144,7 @@ class Posterior:
         self.data = np.array([math.log(p.measured[d].value[KINDS[k].key]) for d, k in self.rows])
         self.noise = np.diag([p.measured[d].sd[KINDS[k].key] ** 2 for d, k in self.rows])
         self.targets = [(d, k) for d, drop in enumerate(p.drops) if drop.predicted for k in range(len(KINDS))]
-        step = _shift(p, self.found.x, COARSE, OWN)
+        step = shift_of(p, self.found.x, COARSE, OWN)
         self.offset = [one[:len(KINDS)] for one in step]
         places = [*self.rows, *self.targets]
         sd = np.array([KINDS[k].model_sd for _, k in places])
@@ -185,7 +185,7 @@ class Posterior:
         """Returns of each drop the responses at points on the case's mesh, and whether it fails; and the sum of squares of samples and tests."""
         p, count = self.problem, len(self.problem.drops)
         outcomes: list[Any] = [None] * len(x)
-        good = [k for k, row in enumerate(x) if p._makes_foam(row[:-1])]
+        good = [k for k, row in enumerate(x) if p.makes_foam(row[:-1])]
         for k, made in zip(good, p.outcomes([(x[k, :-1], range(count)) for k in good], COARSE)):
             outcomes[k] = made
         saved, p.offset = p.offset, {}

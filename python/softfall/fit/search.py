@@ -20,12 +20,13 @@ from .input import CHAIN, KINDS, Input, Model
 
 STARTS, SPREAD = 3, 0.7  # searches, and how far they begin from the start values, in standard deviations of the prior
 STEP, LEAST_STEP, MOST_STEP = 0.05, 0.01, 0.1  # of differences: part of a standard deviation of the prior, and its bounds
-ROUNDS, MOST_CALLS = 6, 25
+ROUNDS, MOST_CALLS, FINE_CALLS = 6, 25, 10
+STILL = 0.03  # standard deviations of the prior: a round that moves the unknowns by less was the last
 GAIN = 0.1  # fall of the objective that is still expected: more is told, and has not converged
 DEEP, DEEP_SD = 0.94, 0.003  # indentation over the thickness, from where the missile all but reaches the anvil
 TOO_FAR = 10.0  # root of the misfit per degree of freedom
-ROUNDING = 1e-6  # of a bound
-ON_BOUND_TRIES = 20  # starts that are tried for one that works
+ON_BOUND, ALL_RETURNED = 1e-3, 0.999  # on the axis of the search; an HU that is 1
+START_TRIES = 20  # starts that are tried for one that works
 
 
 @dataclass
@@ -98,9 +99,13 @@ class Problem:
     def settle(self, x: Array) -> None:
         """Gives drops that cannot be used at x on a cheap mesh a finer one."""
         for mesh in (SECTION, COARSE):
+            self.outcomes([(x, range(len(self.drops)))], mesh)  # side by side; below one by one
             for d, drop in enumerate(self.drops):
-                while self.outcomes([(x, [d])], mesh)[0][0].failure and self.bench.refine(drop, mesh):
-                    pass
+                cheap = self.bench.overrides(drop, mesh)
+                while self.outcomes([(x, [d])], mesh)[0][0].failure:
+                    if not self.bench.refine(drop, mesh):  # it fails on every mesh
+                        self.bench.set_mesh(drop, mesh, cheap)
+                        break
 
     # ---- responses
 
@@ -164,14 +169,14 @@ class Problem:
         size = np.where(self.sd < 0.05, np.minimum(size, 1.0 * self.sd), size)  # of speeds
         return np.where(x + size < self.high, size, -size)
 
-    def jacobian(self, x: Array, mesh: str, also: Sequence[int] = ()) -> tuple[Array, dict[int, Array]]:
+    def jacobian(self, x: Array, mesh: str, also: Sequence[int] = (), side: float = 1.0) -> tuple[Array, dict[int, Array]]:
         """Returns derivatives of the residuals, and of the responses of drops (also of those to predict, whose numbers are given), by differences."""
-        step, n, measured = self.steps(x), len(x), range(len(self.measured))
+        step, n, measured = side * self.steps(x), len(x), range(len(self.measured))
         first_speed = len(self.model.unknown) + len(self.chain)
         which = [[self.speeds[k - first_speed]] if k >= first_speed else [*measured, *also] for k in range(n)]
         points = [(x + step[k] * np.eye(n)[k], which[k]) for k in range(n)]
         base_drops = [*measured, *also]
-        good = [self._makes_foam(point) for point, _ in points]
+        good = [self.makes_foam(point) for point, _ in points]
         for k in range(n):
             if not good[k]:  # the foam ends on this side
                 step[k] = -step[k]
@@ -193,7 +198,7 @@ class Problem:
         rows.append(np.diag(self.log_slope(x) / self.sd))
         return np.nan_to_num(np.concatenate(rows), nan=0.0, posinf=0.0, neginf=0.0), slope
 
-    def _makes_foam(self, x: Array) -> bool:
+    def makes_foam(self, x: Array) -> bool:
         try:
             self.model.form.foam(self.foam_values(x))
         except Error:
@@ -316,7 +321,7 @@ def _starts(problem: Problem, random: np.random.Generator, tell: Callable[[str],
     for k in range(count):
         x = first
         if k or made:
-            for _ in range(ON_BOUND_TRIES):
+            for _ in range(START_TRIES):
                 x = np.clip(problem.start + SPREAD * np.clip(random.standard_normal(len(first)), -2, 2) * problem.sd, problem.low + 1e-6, problem.high - 1e-6)
                 if np.isfinite(problem.residual(x, COARSE)).all():
                     break
@@ -331,7 +336,7 @@ def _starts(problem: Problem, random: np.random.Generator, tell: Callable[[str],
     return best[2], [(objective, how) for objective, how, _ in made]
 
 
-def _shift(problem: Problem, x: Array, mesh: str, to: str) -> list[Array]:
+def shift_of(problem: Problem, x: Array, mesh: str, to: str) -> list[Array]:
     """Returns by how much the responses on one mesh exceed those on another, at x; 0 where one of them is not defined."""
     count, saved = range(len(problem.drops)), problem.offset
     problem.offset = {}
@@ -342,24 +347,20 @@ def _shift(problem: Problem, x: Array, mesh: str, to: str) -> list[Array]:
     return made
 
 
-def _objective(residual: Array) -> float:
-    return float(residual @ residual) if np.isfinite(residual).all() else math.inf
-
-
 def find(problem: Problem, tell: Callable[[str], None]) -> Found:
     """Finds the foam of a model: several searches on the coarse mesh, then the best one with the ratios to the section's and the cases' own drops."""
     x, starts = _starts(problem, np.random.default_rng(problem.given.seed), tell)
     own_shift: list[Array] | None = None
     for turn in range(ROUNDS):
-        section = _shift(problem, x, COARSE, SECTION)
-        if own_shift is None or turn > 1:
-            own_shift = _shift(problem, x, SECTION, OWN)
+        section = shift_of(problem, x, COARSE, SECTION)
+        if own_shift is None:  # it hardly changes; the end of the search finds it anew
+            own_shift = shift_of(problem, x, SECTION, OWN)
         problem.offset = {COARSE: [a + b for a, b in zip(section, own_shift)], SECTION: own_shift}
         before = x
         x, objective, _ = _search(problem, x, COARSE, MOST_CALLS)
         moved = float(np.max(np.abs(x - before) / problem.sd)) if len(x) else 0.0
         tell(f"  round {turn + 1}: objective {objective:.3f}")
-        if moved < 0.02:
+        if moved < STILL:
             break
     return _judge(problem, x, starts, tell)
 
@@ -367,27 +368,31 @@ def find(problem: Problem, tell: Callable[[str], None]) -> Found:
 def _judge(problem: Problem, x: Array, starts: list[tuple[float, str]], tell: Callable[[str], None]) -> Found:
     """Ends a search on the section's drops: steps until no gain is expected, with the ratios to the cases' own drops at that place."""
     predicted = [d for d, drop in enumerate(problem.drops) if drop.predicted]
-    gain = math.inf
     for turn in range(ROUNDS):
-        problem.offset[SECTION] = _shift(problem, x, SECTION, OWN)
+        problem.offset[SECTION] = shift_of(problem, x, SECTION, OWN)
         residual = problem.residual(x, SECTION)
-        jacobian, slope = problem.jacobian(x, SECTION, predicted)
         if not np.isfinite(residual).all():
             raise NumericError(f"the model {problem.model.label}: {_first_failure(problem, x)}", 5)
-        free = ~(((x - problem.low < 1e-3) & (jacobian.T @ residual > 0)) | ((problem.high - x < 1e-3) & (jacobian.T @ residual < 0)))
-        move = np.zeros(len(x))
-        move[free] = -np.linalg.lstsq(jacobian[:, free], residual, rcond=None)[0]
-        gain = float(-(residual @ jacobian @ move))
+        jacobian, slope = problem.jacobian(x, SECTION, predicted)
+        gain = _gain(problem, x, residual, jacobian)
         if gain <= GAIN or turn == ROUNDS - 1:
             break
-        for part in (1.0, 0.5, 0.25, 0.1):
-            trial = np.clip(x + part * move, problem.low + 1e-9, problem.high - 1e-9)
-            if _objective(problem.residual(trial, SECTION)) < _objective(residual):
-                x = trial
-                break
-        else:
+        place, objective, _ = _search(problem, x, SECTION, FINE_CALLS)
+        if objective > float(residual @ residual) - 0.1 * GAIN:  # no step helps: are the differences to one side misleading?
+            other, slopes = problem.jacobian(x, SECTION, predicted, -1.0)
+            jacobian, slope = 0.5 * (jacobian + other), {d: 0.5 * (slope[d] + slopes[d]) for d in slope}
+            gain = _gain(problem, x, residual, jacobian)
             break
+        x = place
     return _found(problem, x, residual, jacobian, slope, gain, starts, tell)
+
+
+def _gain(problem: Problem, x: Array, residual: Array, jacobian: Array) -> float:
+    """Returns by how much the objective is expected to fall with a linear step, of unknowns that no bound holds."""
+    pull = jacobian.T @ residual
+    free = ~(((x - problem.low < ON_BOUND) & (pull > 0)) | ((problem.high - x < ON_BOUND) & (pull < 0)))
+    move = -np.linalg.lstsq(jacobian[:, free], residual, rcond=None)[0]
+    return float(-(pull[free] @ move))
 
 
 def _found(problem: Problem, x: Array, residual: Array, jacobian: Array, slope: dict[int, Array], gain: float, starts: list[tuple[float, str]],
@@ -398,8 +403,9 @@ def _found(problem: Problem, x: Array, residual: Array, jacobian: Array, slope: 
     rows = int(np.count_nonzero(np.any(data != 0, axis=1)))
     freedom = max(1e-6, rows - float(np.trace(data @ covariance @ data.T)))
     scale = math.sqrt(misfit / freedom) if misfit > stats.chi2.ppf(0.95, freedom) else 1.0
-    bounds = [f"{name} stands at its {'lower' if v - low < ROUNDING + 1e-3 else 'upper'} bound" for name, v, low, high in zip(problem.names, x, problem.low, problem.high)
-              if v - low < 1e-3 + ROUNDING or high - v < 1e-3 + ROUNDING]
+    lower = [v - low < ON_BOUND for v, low in zip(x, problem.low)]
+    upper = [high - v < ON_BOUND or (name == "HU" and Problem.value(name, v) > ALL_RETURNED) for name, v, high in zip(problem.names, x, problem.high)]
+    bounds = [f"{name} stands at its {'lower' if at_low else 'upper'} bound" for name, at_low, at_high in zip(problem.names, lower, upper) if at_low or at_high]
     far = math.sqrt(misfit / max(1.0, freedom))
     reason = f"the objective is expected to fall by {gain:.2g} more, but no step found it" if gain > GAIN else \
         f"the data are missed by {far:.1f} times their standard deviations" if far > TOO_FAR else ""
