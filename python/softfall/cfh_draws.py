@@ -74,9 +74,10 @@ def read(folder: Path, case: Case, sets: Mapping[str, str]) -> list[Draw]:
         values = _flat(memory.settings(str(path))["value"])
         said = re.search(r"Draw (\d+) of", path.read_text(encoding="utf-8", errors="replace")[:300])
         response = tuple(float(values.get(f"response_error.{key}", "nan")) for key in RESPONSES)
-        law, density = values.get("law", case["material.law"]), values.get("density", "")
-        if law != case["material.law"]:
-            raise InputError(f"--posterior: the law of {path} is {law}, that of the case's material {case['material.law']}")
+        own = case["material.law"] or "low_density_foam"
+        law, density = values.get("law", "low_density_foam"), values.get("density", "")
+        if law != own:
+            raise InputError(f"--posterior: the law of {path} is {law}, that of the case's material {own}")
         if not density or not math.isclose(library.quantity(density)[0], library.quantity(case["material.density"])[0], rel_tol=1e-6):
             raise InputError(f"--posterior: the density of {path} is {density or 'missing'}, that of the case's material {case['material.density']}")
         stated = any(key.startswith("response_error.") for key in values)
