@@ -101,8 +101,8 @@ set(CPACK_DEBIAN_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS \"softfall (= ${PROJECT_VERSION}-${debian_revision}), ${python_needs}\")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS \"python3-openpyxl\")
-set(CPACK_DEBIAN_PACKAGE_REPLACES \"softfall (<< 1.1)\") # softfall-sweep and softfall-cfh were programs of that package
-set(CPACK_DEBIAN_PACKAGE_BREAKS \"softfall (<< 1.1)\")
+set(CPACK_DEBIAN_PACKAGE_REPLACES \"softfall (<< 1.2)\") # softfall-sweep and softfall-cfh were programs of that package
+set(CPACK_DEBIAN_PACKAGE_BREAKS \"softfall (<< 1.2)\")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS OFF)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA \"${debian_dir}/python/postinst;${debian_dir}/python/prerm\")
