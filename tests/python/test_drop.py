@@ -92,12 +92,12 @@ def test_report_and_files(drop):
 
 
 def test_read_results_leaves_the_folder_alone(drop, tmp_path):
-    before = sorted(drop.results.parent.iterdir())
+    hic, before = drop.figures["hic"], sorted(drop.results.parent.iterdir())
     again = softfall.read_results(drop.results)
-    assert again.figures["hic"] == drop.figures["hic"] and again.report().exists()
+    assert again.figures["hic"] == hic and again.report().exists()
     assert sorted(drop.results.parent.iterdir()) == before
     limits = {limit["key"]: limit["bound"] for limit in again.post(tmp_path / "post", limit_g=10)["verdict"]["limits"]}
-    assert limits["a_max_g"] == 10 and again.verdict.limits[0]["passed"] is False and (tmp_path / "post/report.html").exists()
+    assert limits["a_max_g"] == 10 and again.verdict.limits[0]["passed"] is False and (tmp_path / "post/summary.json").exists()
     with pytest.raises(softfall.InputError, match="unrecognized option"):
         again.post(tmp_path / "more", limitt=10)
 
@@ -111,6 +111,7 @@ def test_files_of_other_results_are_neither_used_nor_replaced(case, drop, tmp_pa
     other.post(tmp_path / "other")
     assert other.figures["hic"] < drop.figures["hic"]
     again = softfall.read_results(other.results, output=tmp_path / "other")
+    assert other.report() == tmp_path / "other/report.html"
     stamp = (tmp_path / "other/report.html").stat().st_mtime_ns
     assert again.figures["hic"] == other.figures["hic"] and again.report().stat().st_mtime_ns == stamp
 
