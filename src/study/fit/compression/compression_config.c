@@ -167,7 +167,7 @@ static sf_status read_form_rate(const sf_config *file, sf_config_item *root, sf_
     r->start[SF_PARAMETER_BETA1] = maxwell ? sqrt(slowest->rate * fastest->rate) : 5000;
     if (factor) {
         sf_foam_form_start_rate(r->start);
-        r->form.base.rate_filter_time = FACTOR_FILTER_TIME;
+        r->form.base.rate_filter_time = r->start[SF_PARAMETER_RATE_FILTER_TIME] = FACTOR_FILTER_TIME;
         if (!config_setting_get_member(root, "DAMP"))
             r->form.base.damp = r->start[SF_PARAMETER_DAMP] = FACTOR_DAMP;
         add_unknown(r, SF_PARAMETER_RATE_FACTOR);
