@@ -40,7 +40,8 @@ set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 injury figures) and the deformation, stress and energy in the foam, by a
 meshless method that remains stable to compressions of 80 % and more. The
 geometry is an editable gmsh file, the rest of a case a short text file, and
-the results are CSV, JSON and ParaView files; with python3-softfall also a report.
+the results are CSV, JSON and ParaView files; python3-softfall adds a
+report.
 
 The package holds the programs, the library with its header, examples,
 geometries and documents.")
