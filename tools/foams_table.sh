@@ -218,8 +218,7 @@ def run(*command):
 def fitted(name, kind):
     """fit.json of examples/foams/NAME.cfg."""
     folder = "%s/%s" % (OUT, name)
-    program = [os.path.join(os.path.dirname(PROGRAM), "softfall"), "fit"] if kind == "drop" else [PROGRAM, kind]
-    run(*program, "examples/foams/%s.cfg" % name, "-o", folder, "--force", *(["--jobs", "2"] if kind == "drop" else []))
+    run(PROGRAM, kind, "examples/foams/%s.cfg" % name, "-o", folder, "--force", *(["--jobs", "2"] if kind == "drop" else []))
     with open(folder + "/fit.json") as stream:
         return json.load(stream)
 
