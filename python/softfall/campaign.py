@@ -18,7 +18,8 @@ import numpy as np
 from . import library, memory, output as output_files, programs, rows_command
 from .array import Array
 from .errors import Error, InputError
-from .memory import GRADES, DropFigures
+from .library import GRADES
+from .memory import DropFigures
 from .plan import RATIO, Plan
 from .progress import duration
 from .store import Entry, Store

@@ -21,7 +21,7 @@ from . import memory
 from .campaign import ANVIL
 from .curves import STANDARD_GRAVITY
 from .errors import Error, failure
-from .memory import GRADES
+from .library import GRADES
 from .progress import duration
 from .store import Entry, Store
 from .worker import OF_THE_MACHINE, Answer, Pool, Task

@@ -18,6 +18,7 @@ from . import programs
 from .array import Array
 from .errors import Error, InputError, failure
 
+GRADES = ("valid", "valid with remarks", "do not use")  # of runs and records, as the library counts them
 _PARAMETER = re.compile(r'material\.(\S+)\s+("(?:[^"\\]|\\.)*"|\(.*\)|\S+)\s+(.*?)\s+(given|default)$')
 _NUMBER = re.compile(r"[-+]?[\d.]+(?:e[-+]?\d+)?")
 _one_at_a_time = threading.Lock()  # files are read by one thread at a time

@@ -18,7 +18,6 @@ from . import library
 from .array import Array
 from .errors import Error
 
-GRADES = ("valid", "valid with remarks", "do not use")
 LEAN = ('output.fields=["displacement"]', "output.frame_interval=1000 s")  # a study keeps no fields
 CHANGED = "an input has changed while the drop was simulated"
 _SUMS = ("steps", "wall_s")  # figures of a series that are sums over its drops

@@ -11,8 +11,8 @@ from . import laboratory, library
 from .curves import Column, column
 from .drop import Figures, Verdict
 from .errors import InputError
+from .library import GRADES
 
-GRADES = ("valid", "valid with remarks", "do not use")
 READ = laboratory.RECORD
 JUDGED = ("filter", "impact", "invert", "zero", "speed", "range")  # options of the record
 

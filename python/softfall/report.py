@@ -21,8 +21,8 @@ from . import library, output as output_files, programs, report_pictures as pict
 from .array import Array
 from .drop import Drop, as_str
 from .errors import Error, InputError
+from .library import GRADES
 
-GRADES = ("valid", "valid with remarks", "do not use")
 KINDS = dict(zip(GRADES, ("good", "fair", "bad")))
 CAUTION = "Indicative, not a certification: figures of simulated impacts, not the test of EN 1177 or ASTM F1292."
 TEST = ("sample", "laboratory", "conditions")  # words of the case about the test

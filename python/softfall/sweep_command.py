@@ -22,7 +22,7 @@ from .command import Parser, add_jobs, jobs_of, say
 from .drop import read_results
 from .effects import Statements
 from .errors import Error, InputError, NumericError, SoftfallWarning
-from .memory import GRADES
+from .library import GRADES
 from .plan import Limit, Plan
 from .progress import duration
 from .store import NAME

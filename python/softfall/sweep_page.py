@@ -15,7 +15,7 @@ import numpy as np
 from . import effects, output as output_files, programs
 from .campaign import ANVIL, REFINED, Table
 from .effects import Statements
-from .memory import GRADES
+from .library import GRADES
 from .plan import Limit, Plan
 
 matplotlib.use("agg")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import softfall
-from softfall import memory, programs
+from softfall import library, memory, programs
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 COARSE = ["geometry.parameters.fine_spacing=20.0", "geometry.parameters.outer_spacing=40.0", "pad.mesh_error_limit=9.0"]
@@ -21,7 +21,7 @@ def test_a_drop_in_memory_has_the_figures_of_the_programs(tmp_path: Path) -> Non
         assert inputs.has_files(run.files) and not inputs.has_files(run.files.replace("pad.geo", "gone.geo"))
     drop = softfall.Case(path, dict(text.split("=") for text in [*COARSE, "output.frame_interval=1000 s"])).run(output=tmp_path / "run", threads=1)
     own = run.drops[0]
-    assert memory.GRADES[own.grade] == drop.verdict and own.verdict.startswith(drop.verdict)
+    assert library.GRADES[own.grade] == drop.verdict and own.verdict.startswith(drop.verdict)
     assert {"hic", "local_collapse", "cells", "a_max_mesh_error"} <= own.figures.keys()
     for key, value in own.figures.items():
         if key not in ("wall_s", "threads"):

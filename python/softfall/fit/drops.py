@@ -20,7 +20,8 @@ import numpy as np
 from .. import memory
 from ..array import Array
 from ..errors import Error, InputError, failure
-from ..memory import GRADES, DropFigures
+from ..library import GRADES
+from ..memory import DropFigures
 from ..progress import duration
 from ..store import Store
 from ..worker import OF_THE_MACHINE, Answer, Pool

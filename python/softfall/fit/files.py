@@ -15,7 +15,8 @@ import numpy as np
 from .. import library, output as output_files
 from ..array import Array
 from ..errors import Error
-from ..memory import GRADES, nine_digits
+from ..library import GRADES
+from ..memory import nine_digits
 from .drops import GRID
 from .input import KINDS, Input
 from .search import Found, press

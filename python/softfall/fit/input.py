@@ -191,7 +191,7 @@ def _curve(group: Setting, name: str) -> Curve | None:
         contact = library.reading(np.ascontiguousarray(read.time), np.ascontiguousarray(read.deceleration), (0.0, 0.5, 0.0), 1000.0)[1]
     except Error as error:
         group.member("curve").refuse(f"{error}")
-    if str(read.verdict) == record.GRADES[2]:
+    if str(read.verdict) == library.GRADES[2]:
         group.member("curve").refuse(f"{path}: a foam cannot be fitted to this record: {'; '.join(read.verdict.remarks)}")
     peak = float(np.max(read.deceleration))
     time = np.arange(1, int((read.time[-1] - contact) / SAMPLE_STEP) + 1) * SAMPLE_STEP

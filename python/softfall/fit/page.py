@@ -12,7 +12,7 @@ import jinja2
 import numpy as np
 
 from .. import library, output as output_files, programs
-from ..memory import GRADES
+from ..library import GRADES
 from ..sweep_page import PLAIN
 from .drops import GRID
 from .files import Study, chain_lines, tests_of
