@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
+#include <omp.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -19,6 +21,18 @@ enum { SF_FEW_NODES = 0, SF_FEW_POINTS = 0 };
 #else
 enum { SF_FEW_NODES = 50000, SF_FEW_POINTS = 3000 };
 #endif
+
+/* Calls a function whose loops are `omp for`, by all threads where that is `worth` it. One thread runs it
+ * without a team: each barrier of a team is a system call in libgomp, even of a team of one, and the step of
+ * a section has 17 of them. Drops side by side are in a parallel region already and need teams of their own. */
+#define SF_BY_ALL_THREADS(worth, call)                                                                       \
+    do {                                                                                                     \
+        const bool many = worth;                                                                             \
+        if (omp_get_max_threads() > 1 || omp_in_parallel()) {                                                \
+            _Pragma("omp parallel if (many)") call;                                                          \
+        } else                                                                                               \
+            call;                                                                                            \
+    } while (0)
 
 /* A kernel is compiled for three levels of the processor, with all functions of its file that it calls; the
  * program selects the best level at its start. The levels differ in the width of the vectors only: nothing is

@@ -200,8 +200,7 @@ static void add_moments(const sf_model *m, const sf_state *s, int64_t i, double 
 static void accelerate(const sf_model *m, sf_state *s, double dt_v) {
     const double free[3] = {1, m->axisymmetric ? 0 : 1, 1};
     const int64_t phase = sf_vibration_phase(s);
-#pragma omp parallel for if (m->node_count > SF_FEW_NODES) default(none) shared(m, s, dt_v, phase, free)     \
-    schedule(static)
+#pragma omp for schedule(static)
     for (int64_t chunk = 0; chunk < s->chunk_count; chunk++) {
         double vibration = 0, kinetic = 0, momentum[3] = {0}, angular[3] = {0}, moment[3] = {0}, fastest = 0;
         for (int64_t i = chunk * SF_CHUNK; i < (chunk + 1) * SF_CHUNK && i < m->node_count; i++) {
@@ -240,19 +239,21 @@ static sf_wrench wrench_of_constraints(const sf_state *s, const sf_constraint_st
     return w;
 }
 
+/* Forces inside the pad. */
+static void evaluate_pad(const sf_model *m, const sf_operators *op, sf_state *s) {
+    sf_domain_stress(m, op, s); /* F, P, history */
+#pragma omp master
+    sf_lap(s->watch, SF_PHASE_STRESS);
+    sf_stabilisation(m, op, s); /* pair forces, couples */
+#pragma omp master
+    sf_lap(s->watch, SF_PHASE_STABILISATION);
+    sf_internal_force(m, op, s); /* f = pair forces - sum V P B */
+#pragma omp master
+    sf_lap(s->watch, SF_PHASE_FORCE);
+}
+
 sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *s, sf_error *err) {
-#pragma omp parallel default(none) shared(m, op, s)
-    {
-        sf_domain_stress(m, op, s); /* F, P, history */
-#pragma omp master
-        sf_lap(s->watch, SF_PHASE_STRESS);
-        sf_stabilisation(m, op, s); /* pair forces, couples */
-#pragma omp master
-        sf_lap(s->watch, SF_PHASE_STABILISATION);
-        sf_internal_force(m, op, s); /* f = pair forces - sum V P B */
-#pragma omp master
-        sf_lap(s->watch, SF_PHASE_FORCE);
-    }
+    SF_BY_ALL_THREADS(true, evaluate_pad(m, op, s));
     SF_TRY(check_domains(m, s, err));
     sf_membrane_force(m, &op->membrane, s->d, &s->membrane, s->force); /* f += phi^T f of the membrane */
     sf_time_step_choose(m, op, s);
@@ -274,7 +275,7 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
         s->constraint_residual = sf_constraint_residual(m, &op->constraint, &held);
     sf_lap(s->watch, SF_PHASE_CONSTRAINT);
 
-    accelerate(m, s, dt_v); /* v at the next half step */
+    SF_BY_ALL_THREADS(m->node_count > SF_FEW_NODES, accelerate(m, s, dt_v)); /* v at the next half step */
     sf_missile_kick(m, &s->missile, s->time, s->dt, s->dt_old);
     s->ledger.weight = sf_anvil_work(&op->anvil, s->d);
     sf_wrench outside = wrench_of_constraints(s, &held);
@@ -289,11 +290,15 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     return check_energy(m, s, err);
 }
 
-void sf_step_advance(const sf_model *m, sf_state *s) {
-    double dt = s->dt;
-#pragma omp parallel for if (m->node_count > SF_FEW_NODES) default(none) shared(m, s, dt) schedule(static)
+static void move_nodes(const sf_model *m, sf_state *s, double dt) {
+#pragma omp for schedule(static)
     for (int64_t k = 0; k < 3 * m->node_count; k++)
         s->d[k] += dt * s->v[k];
+}
+
+void sf_step_advance(const sf_model *m, sf_state *s) {
+    double dt = s->dt;
+    SF_BY_ALL_THREADS(m->node_count > SF_FEW_NODES, move_nodes(m, s, dt));
     s->time += dt;
     sf_missile_drift(m, &s->missile, s->time, dt);
     s->dt_old = dt;

@@ -169,26 +169,23 @@ static SF_KERNEL void collect_fluxes(const sf_model *m, const sf_halo *h, int64_
         w->waiting[h->ptr[group] + q] = (float)sum[end - own + q];
 }
 
-/* The product K mode: the same sums as in the step itself. */
+/* The product K mode: the same sums as in the step itself. By all threads. */
 static void apply_operator(const sf_model *m, const sf_operators *op, const sf_state *s,
                            const power_work *w) {
     const sf_halo *h = &op->halo;
-#pragma omp parallel default(none) shared(m, h, op, s, w)
-    {
 #pragma omp for schedule(static)
-        for (int64_t g = 0; g < h->group_count; g++)
-            mode_gradients(m, h, s->mode, g, w->gradient);
+    for (int64_t g = 0; g < h->group_count; g++)
+        mode_gradients(m, h, s->mode, g, w->gradient);
 #pragma omp for schedule(static)
-        for (int64_t g = 0; g < h->group_count; g++)
-            mode_fluxes(m, op, s, g, w);
+    for (int64_t g = 0; g < h->group_count; g++)
+        mode_fluxes(m, op, s, g, w);
 #pragma omp for schedule(static)
-        for (int64_t g = 0; g < h->group_count; g++)
-            collect_fluxes(m, h, g, w);
+    for (int64_t g = 0; g < h->group_count; g++)
+        collect_fluxes(m, h, g, w);
 #pragma omp for schedule(static)
-        for (int64_t i = 0; i < m->node_count; i++)
-            for (int32_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
-                w->out[i] += w->waiting[h->slot[q]];
-    }
+    for (int64_t i = 0; i < m->node_count; i++)
+        for (int32_t q = h->slot_ptr[i]; q < h->slot_ptr[i + 1]; q++)
+            w->out[i] += w->waiting[h->slot[q]];
 }
 
 /* Largest eigenvalue of the tridiagonal matrix (diagonal alpha, off-diagonal beta) and its eigenvector z, by
@@ -236,7 +233,7 @@ static double lanczos_cycle(const sf_model *m, const sf_operators *op, sf_state 
         float *q = &w.basis[size * n], *before = size > 0 ? q - n : NULL;
         for (int64_t i = 0; i < n; i++)
             q[i] = (float)(s->mode[i] /= length);
-        apply_operator(m, op, s, &w);
+        SF_BY_ALL_THREADS(true, apply_operator(m, op, s, &w));
         alpha[size] = norm = 0;
         for (int64_t i = 0; i < n; i++)
             alpha[size] += s->mode[i] * out[i];

@@ -247,16 +247,17 @@ static void add_resultants(const sf_constraint *c, sf_constraint_step *step) {
     }
 }
 
-void sf_constraint_project(const sf_constraint *c, sf_constraint_step *step) {
-#pragma omp parallel if (c->rows > SF_FEW_POINTS) default(none) shared(c, step)
-    {
-        right_side(c, step);
-        if (c->rows > 0)
-            solve(c);
+static void find_reactions(const sf_constraint *c, sf_constraint_step *step) {
+    right_side(c, step);
+    if (c->rows > 0)
+        solve(c);
 #pragma omp for schedule(static)
-        for (int64_t t = 0; t < c->touched_count; t += BATCH)
-            set_reactions(c, t, step->reaction);
-    }
+    for (int64_t t = 0; t < c->touched_count; t += BATCH)
+        set_reactions(c, t, step->reaction);
+}
+
+void sf_constraint_project(const sf_constraint *c, sf_constraint_step *step) {
+    SF_BY_ALL_THREADS(c->rows > SF_FEW_POINTS, find_reactions(c, step));
     add_resultants(c, step);
 }
 

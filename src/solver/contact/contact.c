@@ -53,10 +53,9 @@ static sf_status list_near(const sf_model *m, const sf_operators *op, const sf_s
     return SF_OK;
 }
 
-/* Positions now and predicted without contact forces, by u_h. */
+/* Positions now and predicted without contact forces, by u_h. By all threads. */
 static void predict_points(const sf_model *m, const sf_contact_rows *rows, sf_state *s, double dt_v) {
-#pragma omp parallel for if (s->contact_near_count > SF_FEW_POINTS) default(none) shared(m, rows, s, dt_v)   \
-    schedule(static)
+#pragma omp for schedule(static)
     for (int64_t near = 0; near < s->contact_near_count; near++) {
         int64_t c = s->contact_near[near], node = sf_model_point_node(m, c);
         double now[3] = {0}, step[3] = {0};
@@ -298,7 +297,7 @@ sf_status sf_contact_solve(const sf_model *m, const sf_operators *op, sf_state *
     SF_TRY(err->status);
     sf_anvil_pull(&op->anvil, s->force);
     bool all = use_room(m, op, s);
-    predict_points(m, &op->rows, s, dt_v);
+    SF_BY_ALL_THREADS(s->contact_near_count > SF_FEW_POINTS, predict_points(m, &op->rows, s, dt_v));
     if (all)
         SF_TRY(list_near(m, op, &at, s, err));
     find_pairs(m, op, s, &response, &w);
