@@ -33,15 +33,20 @@ static double integral_at(const sf_series *c, const double *integral, double tim
 }
 
 /* Offers the pairs of the grid's instants, `stride` apart, that may be better than the best one: the mean of
- * a window is at most the peak, and its integral at most the greatest one less that before the window. */
-static void scan(search *s, int64_t n, const double *v, double step, int64_t stride) {
+ * a window is at most the peak, its integral at most the greatest one less that before the window, and at
+ * least what makes a window of this length as good as the best one at the begin of the scan (`least`, [n + 1]
+ * of work). */
+static void scan(search *s, int64_t n, const double *v, double step, int64_t stride, double *least) {
+    for (int64_t k = 0; k <= n; k += stride)
+        least[k] = pow(s->score * pow((double)k * step, 3), 0.2) * (1 - 1e-12);
     double peak = s->curve->value[sf_series_peak(s->curve)], greatest = gsl_stats_max(v, 1, (size_t)n + 1);
     for (int64_t i = 0; i < n && v[i] < greatest; i += stride) {
         double shortest = fmax((double)stride, sqrt(s->score / pow(peak, 5)) / step);
         double longest = fmin(s->longest, cbrt(pow(greatest - v[i], 5) / s->score)) / step;
         int64_t last = i + (int64_t)fmin(longest * (1 + 1e-12), (double)(n - i));
         for (int64_t j = i + (int64_t)shortest; j <= last; j += stride)
-            offer(s, s->first + (double)i * step, s->first + (double)j * step, v[j] - v[i]);
+            if (v[j] - v[i] >= least[j - i])
+                offer(s, s->first + (double)i * step, s->first + (double)j * step, v[j] - v[i]);
     }
 }
 
@@ -99,7 +104,7 @@ sf_status sf_hic_evaluate(const sf_series *curve, double window, sf_hic *hic, sf
     int64_t n = count < LEAST_INTERVALS ? LEAST_INTERVALS : count - 1;
     if (n > MOST_INTERVALS)
         n = MOST_INTERVALS;
-    SF_OWNED double *integral = sf_alloc(err, (size_t)(count + n + 1), sizeof *integral, "the HIC search");
+    SF_OWNED double *integral = sf_alloc(err, (size_t)(count + 2 * (n + 1)), sizeof *integral, "the HIC search");
     SF_TRY(err->status);
     for (int64_t i = 1; i < count; i++)
         integral[i] = integral[i - 1] +
@@ -109,8 +114,8 @@ sf_status sf_hic_evaluate(const sf_series *curve, double window, sf_hic *hic, sf
     double step = (s.last - s.first) / (double)n, *v = integral + count;
     for (int64_t i = 0; i <= n; i++)
         v[i] = integral_at(curve, integral, s.first + (double)i * step);
-    scan(&s, n, v, step, COARSE);
-    scan(&s, n, v, step, 1);
+    scan(&s, n, v, step, COARSE, v + n + 1);
+    scan(&s, n, v, step, 1, v + n + 1);
     for (int64_t i = 0; i <= n && s.first + (double)i * step + window <= s.last; i++) {
         double t1 = s.first + (double)i * step;
         offer(&s, t1, t1 + window, integral_at(curve, integral, t1 + window) - v[i]);
