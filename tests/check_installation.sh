@@ -48,8 +48,8 @@ done
 [ "$(complete softfall-pre --ke)" = --keys ] || fail "softfall-pre --ke: $(complete softfall-pre --ke)"
 [ "$(complete softfall-pre --se)" = --set= ] || fail "softfall-pre --se: $(complete softfall-pre --se)"
 [ "$(complete softfall-solve --on-failure = r)" = remove ] || fail "softfall-solve --on-failure=r is not completed"
-[ "$(complete softfall-fit '')" = 'compression drop' ] || fail "the words of softfall-fit: $(complete softfall-fit '')"
-[ "$(complete softfall-fit drop --jo)" = --jobs= ] || fail "softfall-fit drop --jo is not completed"
+[ "$(complete softfall-fit '')" = compression ] || fail "the words of softfall-fit: $(complete softfall-fit '')"
+[ "$(complete softfall-fit compression --ou)" = --output= ] || fail "softfall-fit compression --ou is not completed"
 [ "$(PATH=$prefix/bin:$PATH complete softfall-new --from wal)" = wall ] || fail "the examples of softfall-new --from are not completed"
 if [ -x "$prefix/bin/softfall" ]; then
     (

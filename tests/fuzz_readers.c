@@ -7,7 +7,6 @@
 #include "study/batch.h"
 #include "material/curve.h"
 #include "study/fit/compression/compression_config.h"
-#include "study/fit/drop/drop_fit.h"
 #include "io/plain_file.h"
 #include "io/replace.h"
 #include "model/model_io.h"
@@ -81,13 +80,6 @@ static sf_status read_reference(const char *path, sf_error *err) {
     options.cfc = 60;
     if (sf_reference_read(&options, &reference, &coarse) == SF_OK)
         sf_reference_free(&reference);
-    return err->status;
-}
-
-static sf_status read_fit(const char *path, sf_error *err) {
-    sf_fit_input input;
-    sf_fit_input_read(path, 0, &input, err);
-    sf_fit_input_free(&input);
     return err->status;
 }
 
@@ -193,7 +185,6 @@ static const fuzz_reader readers[] = {
     {"curve", "curve.csv", read_curve},
     {"motion", "fuzz.csv", read_motion},
     {"reference", "reference.csv", read_reference},
-    {"fit", "fit.cfg", read_fit},
     {"model", "model.h5", read_model},
     {"results", "results.h5", read_results},
     {"msh", "mesh.msh", read_msh},

@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-order="exactness wave mms material time_step contact layers base missile calculix hyperfoam mesh sensitivity reproducibility identification identification_drop coverage_drop"
+order="exactness wave mms material time_step contact layers base missile calculix hyperfoam mesh sensitivity reproducibility identification"
 build=${BUILD_DIR:-build}
 sections=docs/images/verification
 ran=no
@@ -48,7 +48,7 @@ Does softfall solve the equations that [theory.md](theory.md) states? Yes, to ro
     tools/verification.sh            # runs all studies and writes this page, or: tools/verification.sh NAME...
     tools/verification.sh --ran      # takes what the last ./setup.sh test and ./setup.sh slow of this tree left
 
-`ctest --test-dir build -L verify` runs the short studies, with `-L slow` the long ones (base, calculix, coverage_drop, hyperfoam, mesh, sensitivity). The row of the Debug build needs `cmake --preset debug && cmake --build build-debug` and then
+`ctest --test-dir build -L verify` runs the short studies, with `-L slow` the long ones (base, calculix, hyperfoam, mesh, sensitivity). The row of the Debug build needs `cmake --preset debug && cmake --build build-debug` and then
 `tools/verification.sh reproducibility`. Bold is measured, its bound stands in brackets; of more than four checks the three nearest to their bounds are shown. The sections, with all tables, are in `docs/images/verification`. Wall times depend on the machine; all other figures repeat to the last digit on one
 machine.
 

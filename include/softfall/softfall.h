@@ -191,6 +191,11 @@ SOFTFALL_API void softfall_form_start(const softfall_form *form, const double *g
 SOFTFALL_API softfall_status softfall_form_material(const softfall_form *form, const double *value,
                                                     double informed, softfall_material **out,
                                                     softfall_error *error);
+/* Multiplies every curve, as a fine table, by exp(bend), linear between `count` rising strains and constant beyond them. Where
+ * the stress would fall with the strain it stays level. SOFTFALL_INPUT: no foam with curves, or no strain. */
+SOFTFALL_API softfall_status softfall_material_bend(softfall_material *material, int64_t count,
+                                                    const double *strain, const double *bend,
+                                                    softfall_error *error);
 /* Writes `folder`/`name`.cfg with its curves beside it, `title` and `comments` (lines) above; files that are
  * there are replaced. SOFTFALL_MODEL: softfall-pre would refuse the material, and none is written. */
 SOFTFALL_API softfall_status softfall_material_write(const softfall_material *material, const char *folder,

@@ -199,6 +199,13 @@ class Foam(Material):
     def handle(self) -> c.c_void_p:
         return self._handle
 
+    def bend(self, strain: Any, factor: Any) -> None:
+        """softfall_material_bend: multiplies the curves by exp(factor), linear between the strains."""
+        at, by = np.ascontiguousarray(strain, dtype=float), np.ascontiguousarray(factor, dtype=float)
+        _call("softfall_material_bend", self._handle, c.c_int64(at.size), _array(at), _array(by))
+        self.curves = []
+        self._read_curves()
+
     def write(self, folder: str, name: str, title: str, comments: str) -> None:
         """softfall_material_write: folder/name.cfg with its curves."""
         with _one_at_a_time:

@@ -10,6 +10,8 @@
 #include "study/material_file.h"
 #include <math.h>
 
+static const double LEAST_RISE = 1e-6; /* of a bent curve, from point to point */
+
 struct softfall_form {
     sf_foam_form form;
     char *parameters; /* owned */
@@ -124,6 +126,32 @@ softfall_status softfall_form_material(const softfall_form *form, const double *
         m = NULL;
     }
     *out = m;
+    return softfall_return(&err, error);
+}
+
+static double bend_at(int64_t count, const double *strain, const double *bend, double e) {
+    int64_t k = 0;
+    while (k < count && strain[k] <= e)
+        k++;
+    if (k == 0 || k == count)
+        return bend[k == 0 ? 0 : count - 1];
+    return bend[k - 1] + (bend[k] - bend[k - 1]) * (e - strain[k - 1]) / (strain[k] - strain[k - 1]);
+}
+
+softfall_status softfall_material_bend(softfall_material *material, int64_t count, const double *strain,
+                                       const double *bend, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_foam_card *card = material->data.law == &sf_low_density_foam ? sf_foam_card_of(&material->data) : NULL;
+    if (!card || count < 1)
+        SF_REFUSE(&err, "only curves of the law %s can be bent, at 1 strain or more", sf_low_density_foam.name);
+    else
+        sf_foam_card_resample(card, &err);
+    for (int64_t c = 0; err.status == SF_OK && c < card->curve_count; c++)
+        for (int64_t k = card->curve_ptr[c]; k < card->curve_ptr[c + 1]; k++) {
+            double before = k > card->curve_ptr[c] ? card->curve_stress[k - 1] * (1 + LEAST_RISE) : 0;
+            card->curve_stress[k] =
+                fmax(before, card->curve_stress[k] * exp(bend_at(count, strain, bend, card->curve_strain[k])));
+        }
     return softfall_return(&err, error);
 }
 

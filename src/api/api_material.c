@@ -4,7 +4,7 @@
 
 #include "case/read.h"
 #include "material/laws.h"
-#include "study/column.h"
+#include "study/cushion.h"
 #include <math.h>
 
 softfall_status softfall_material_read(const char *path, double temperature, softfall_material **out,
@@ -75,18 +75,9 @@ softfall_status softfall_cushion(const softfall_material *material, double stati
                                  double drop_height, double *peak_g, softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
-    const sf_columns block = {.mass = static_stress / SF_STANDARD_GRAVITY,
-                              .speed = sqrt(2 * SF_STANDARD_GRAVITY * drop_height),
-                              .thickness = thickness,
-                              .count = 1,
-                              .area = {1}};
-    sf_columns_figures figures;
+    const sf_cushion cushion = {static_stress, thickness, drop_height};
     *peak_g = NAN;
-    if (!(static_stress > 0 && thickness > 0 && drop_height > 0))
-        SF_REFUSE(&err, "a static stress of %g Pa on %g m from %g m: all three are above 0", static_stress,
-                  thickness, drop_height);
-    else if (sf_material_law_build(&material->data, &law, &err) == SF_OK &&
-             sf_columns_respond(&block, &law, &figures, NULL, &err) == SF_OK)
-        *peak_g = figures.a_max_g;
+    if (sf_material_law_build(&material->data, &law, &err) == SF_OK)
+        sf_cushion_peak(&cushion, &law, peak_g, &err);
     return softfall_return(&err, error);
 }

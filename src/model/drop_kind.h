@@ -37,7 +37,7 @@ typedef enum sf_drop_kind { SF_DROP_KINDS(SF_DROP_KIND_NAME) SF_FIT_SAMPLES } sf
 typedef struct sf_drop_kind_info {
     const char *key, *error_key, *sd_key; /* in the fit file and in response_error */
     double sd;                            /* default of the standard deviation, relative */
-    double model_sd; /* of the logarithm, of the model's error at kappa = 1 (study/fit/drop/inference.h) */
+    double model_sd; /* of the logarithm, of the model's error at kappa = 1 */
     const char *stem, *suffix; /* of its key in fit.json: the suffix has the unit */
     const char *name, *unit;   /* in reports */
     int digits;                /* there */

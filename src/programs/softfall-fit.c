@@ -5,14 +5,12 @@
 #include "base/near.h"
 #include "base/program.h"
 #include "study/fit/compression/compression_kind.h"
-#include "study/fit/drop/drop_report.h"
 static const struct {
     const char *word;
     int (*run)(int argc, char **argv);
     const char *meaning;
 } commands[] = {
     {"compression", sf_fit_compression_main, "from compression tests of a foam cube to a material file"},
-    {"drop", sf_fit_drop_main, "from measured drops to a material file"},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -34,6 +32,10 @@ int main(int argc, char **argv) {
     for (int k = 0; k < COMMANDS; k++)
         if (strcmp(word, commands[k].word) == 0)
             return commands[k].run(argc - 1, argv + 1);
+    if (strcmp(word, "drop") == 0) {
+        fputs("softfall-fit: measured drops are fitted by another program: softfall fit FIT.cfg -o DIR\n", stderr);
+        return 2;
+    }
     if (strcmp(word, "--help") == 0 || strcmp(word, "-?") == 0) {
         print_usage(stdout);
         return 0;

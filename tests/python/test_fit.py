@@ -172,8 +172,7 @@ def test_a_search_that_ends_on_a_bound_says_which(tmp_path: Path) -> None:
 def sampled(lab: Path, found: dict[str, Any]) -> dict[str, Any]:
     """fit.json of the same fit with a small posterior; its drops are those of the fit at first."""
     with pytest.MonkeyPatch.context() as patch:
-        for name, value in (("FIRST", 24), ("SECOND", 16), ("DRAWS", 40), ("STEPS", 300), ("BURN", 100)):
-            patch.setattr(posterior, name, value)
+        patch.setattr(posterior, "USUAL", posterior.Effort(first=24, second=16, draws=40, rounds=2, steps=300, burn=100))
         (lab / "post.cfg").write_text((lab / "fit.cfg").read_text().replace("posterior = false;", ""))
         (lab / "post").mkdir()
         (lab / "post/drops.sqlite").write_bytes((lab / "out/drops.sqlite").read_bytes())
@@ -209,6 +208,23 @@ def test_importance_weights_are_those_of_the_densities() -> None:
     weights, k = posterior.pareto(-0.5 * x**2 + 0.5 * (x / 1.3) ** 2)
     assert float(weights @ x**2) == pytest.approx(1.0, rel=0.05) and k < 0.5
     assert posterior.pareto(2.0 * np.abs(x) ** 1.5)[1] > 0.7  # a tail that no weight makes up for
+
+
+def test_a_bend_of_the_whole_curve_is_a_scale_of_its_stress(lab: Path, tmp_path: Path) -> None:
+    given = fit_input.read(str(lab / "fit.cfg"))
+    foams = [given.models[0].form.foam(given.models[0].start) for _ in range(2)]
+    foams[0].bend([0.5], [0.0])
+    foams[1].bend([0.2, 0.4], [0.1, 0.3])
+    (_, strain, stress), (_, _, bent) = foams[0].curves[0], foams[1].curves[0]
+    assert len(strain) > 100 and bent[1:] / stress[1:] == pytest.approx(np.exp(np.interp(strain[1:], [0.2, 0.4], [0.1, 0.3])), rel=1e-12)
+    with Bench(given, tmp_path, 1, lambda text: None) as bench:
+        problem = Problem(given, given.models[0], bench)
+        scale, x = problem.names.index("stress_scale"), problem.start
+        step = 0.03 * np.eye(len(x))[scale]
+        base, more = (problem.outcomes([(point, [0])], COARSE)[0][0].logs() for point in (x, x + step))
+        slopes = problem.bend_slopes(x)[0]
+    assert slopes.sum(axis=1)[:3] == pytest.approx((more - base)[:3] / 0.03, rel=0.08, abs=0.01)  # second order
+    assert abs(slopes[0, 9]) < 1e-2 * abs(slopes[0]).max()  # no node is compressed so far
 
 
 def test_cushion_curves_alone(tmp_path: Path) -> None:

@@ -52,6 +52,10 @@ class Outcome(NamedTuple):
         values = np.array([self.get(kind.key) for kind in KINDS])
         return np.where(values > 0, np.log(np.where(values > 0, values, 1.0)), math.nan)
 
+    def by_chain(self) -> Array:
+        """Returns ln of the numbers of KINDS over those without the accelerometer's chain; 0 where it has none."""
+        return np.array([math.log(self.get(kind.key) / self.figures[f"raw_{kind.key}"]) if self.figures.get(f"raw_{kind.key}") else 0.0 for kind in KINDS])
+
     def shown(self) -> Array:
         """Returns the curve (g) at the times of GRID, of a drop on its own mesh."""
         count = sum(key.startswith("sample_") for key in self.figures)
@@ -59,6 +63,22 @@ class Outcome(NamedTuple):
 
     def samples(self, count: int) -> Array:
         return np.array([self.get(f"sample_{k}") for k in range(count)])
+
+
+class Wanted(NamedTuple):
+    """A drop of a foam on a mesh."""
+
+    drop: Drop
+    mesh: str
+    model: Model
+    values: Array  # of its form
+    speed: float  # factor
+    chain: list[float]
+    bend: Sequence[float] = ()  # of the curve, at BENDS
+
+
+def _twelve_digits(values: Iterable[float]) -> list[float]:
+    return [float(f"{value:.12g}") for value in values]
 
 
 @dataclass
@@ -132,7 +152,8 @@ class Bench:
                                  f"{own.info.missile_speed:.4g} m/s; it is for a coarser mesh of the same drop")
         return [material]
 
-    def _task(self, drop: Drop, mesh: str, model: Model, values: Iterable[float], speed: float, chain: Iterable[float]) -> Task:
+    def _task(self, one: Wanted) -> Task:
+        drop, mesh, model = one.drop, one.mesh, one.model
         overrides, case = self.overrides(drop, mesh), str(drop.case)
         inputs = self._keys.get((case, tuple(overrides)))
         if inputs is None:
@@ -140,15 +161,14 @@ class Bench:
                 inputs = self._keys[(case, tuple(overrides))] = read.key()
         samples, channel = (drop.curve.time.tolist(), drop.curve.channel_class) if drop.curve else ([], 1000.0)
         samples = [*samples, *GRID] if mesh == OWN else samples  # for the picture
-        numbers = [float(f"{value:.12g}") for value in values]
-        rest = ((str(self.given.material), model.form.curve, self.given.solid_density), numbers, float(f"{drop.speed * speed:.12g}"), [float(f"{x:.12g}") for x in chain],
-                samples, drop.number or 1, channel)
+        rest = ((str(self.given.material), model.form.curve, self.given.solid_density), _twelve_digits(one.values), float(f"{drop.speed * one.speed:.12g}"),
+                _twelve_digits(one.chain), samples, drop.number or 1, channel, _twelve_digits(one.bend))
         key = hashlib.sha256(json.dumps([inputs, self._material, rest[0][1:], *rest[1:]]).encode()).hexdigest()[:32]
         return Task(key, case, overrides, *rest)
 
-    def run(self, wanted: Sequence[tuple[Drop, str, Model, Array, float, list[float]]]) -> list[Outcome]:
-        """Returns the outcomes of drops: drop, mesh, model, values of its form, factor on the speed, chain. What is not known is simulated."""
-        tasks = [self._task(*one) for one in wanted]
+    def run(self, wanted: Sequence[Wanted]) -> list[Outcome]:
+        """Returns the outcomes of drops. What is not known is simulated."""
+        tasks = [self._task(one) for one in wanted]
         fresh = {task.key: task for task in tasks if task.key not in self._known}
         for key, entry in self._store.entries(list(fresh)).items():
             if entry.state in ("done", "failed"):
@@ -162,7 +182,7 @@ class Bench:
             if time.monotonic() - last > 30:
                 last = time.monotonic()
                 self.tell(f"  {done} of {len(futures)} drops, about {duration((last - begin) / done * (len(futures) - done))} left")
-        return [self._outcome(one[0], task) for one, task in zip(wanted, tasks)]
+        return [self._outcome(one.drop, task) for one, task in zip(wanted, tasks)]
 
     def _keep(self, answer: Answer) -> None:
         if answer.code in OF_THE_MACHINE:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What else agrees with the measurements: the posterior of a model by an emulator of drops, a chain on it, and draws that are simulated and weighed.
 
-An emulator (a quadratic with a Gaussian process on what it leaves) learns the drops in two rounds: of an inflated Laplace approximation, then of draws of a first
-chain. A second chain gives draws, each of which is simulated; their importance weights take away what the emulator still has wrong. Beside the unknowns the chain
-has kappa, the size of the model's other errors: of each number one that all drops share and one of a drop's own, each with a standard deviation of kappa model_sd/sqrt 2.
-The mesh is an unknown, too: a factor on the step from the coarse drop to that of the case.
+An emulator (a quadratic with a Gaussian process on what it leaves) learns the drops of an inflated Laplace approximation, then of draws of a first and of a second chain;
+its error is one of the numbers' errors. The last chain gives draws, each of which is simulated; their importance weights take away what the emulator still has wrong. Beside the unknowns the chain
+has tau, the size of what the true loading curve has beyond the form: a Gaussian process on the logarithm of the stress with a correlation length of 0.12 strain, which acts on the numbers
+by their derivatives; and kappa, the size of the model's other errors: of each number one that all drops share and one of a drop's own, each with a standard deviation of
+kappa model_sd/sqrt 2. The mesh is an unknown, too: a factor on the step from the coarse drop to that of the case.
 """
 from __future__ import annotations
 
@@ -26,12 +27,14 @@ from ..memory import nine_digits
 from .drops import COARSE, OWN
 from .input import KINDS
 from .search import Found, Problem, shift_of
+from .work import BENDS
 
-FIRST, SECOND, DRAWS = 100, 80, 120  # foams that are simulated: of the first design, of draws of a first chain, of the last one
 INFLATE = 1.6  # of the Laplace approximation, in standard deviations
-STEPS, BURN, ENSEMBLES = 1600, 500, 2  # of a chain
-KAPPA = 1.0  # scale of the half-normal prior
+ENSEMBLES = 2  # of a chain
+KAPPA, TAU = 1.0, 0.1  # scales of the half-normal priors
+LENGTH = 0.12  # strain, over which the curve's bend is alike
 MESH_PART = 1 / 3  # of the step to the case's mesh: its error, of order 2
+DEEP_ENOUGH, LEAST_POINTS = 20.0, 6  # ln of the density below the best, beyond one for each unknown, to which an emulator learns; points for each unknown that it has at least
 RIDGE, NEAR = 1e-4, 3  # of the quadratic; neighbours that tell whether a drop fails
 RHAT, EFFECTIVE, PARETO = 1.02, 400.0, 0.7
 LEAVE_DRAWS, OUTPUT_DRAWS, ERRORS = 1500, 200, 16  # of a chain for leave-one-out; files of draws; errors of the responses for each draw
@@ -112,6 +115,12 @@ def pareto(log_weights: Array) -> tuple[Array, float]:
     return w / w.sum(), k
 
 
+def normal_density(off: Array, cover: Array) -> Array:
+    """Returns ln of the normal density of residuals [points][rows] with covariances [points][rows][rows]."""
+    square = np.einsum("si,si->s", off, np.linalg.solve(cover, off[..., None])[..., 0])
+    return np.asarray(-0.5 * (square + np.linalg.slogdet(cover)[1] + off.shape[1] * math.log(2 * math.pi)))
+
+
 def quantiles(values: Array, weights: Array, shares: Sequence[float] = TAIL) -> Array:
     """Returns weighted quantiles; values may be infinite.
 
@@ -123,20 +132,42 @@ def quantiles(values: Array, weights: Array, shares: Sequence[float] = TAIL) -> 
     return np.asarray(values[order][np.minimum(np.searchsorted(places, np.asarray(shares) - 1e-12), len(values) - 1)])
 
 
+class Simulated(NamedTuple):
+    """Points with all drops, on the case's mesh."""
+
+    x: Array  # [points][unknowns, ln(kappa), ln(tau)]
+    response: Array  # [drops][points][KINDS], ln of the numbers; NaN: not defined
+    failed: Array  # [drops][points]
+    rest: Array  # [points], sum of squares of samples and tests
+    by_chain: Array  # [drops][points][KINDS], ln of a number over that without the accelerometer's chain
+
+    def and_these(self, other: Simulated) -> Simulated:
+        """Returns both together."""
+        points = (0, 1, 1, 0, 1)  # the axis
+        return Simulated(*(np.concatenate(pair, axis=axis) for *pair, axis in zip(self, other, points)))
+
+    def only(self, keep: Array) -> Simulated:
+        """Returns some of the points."""
+        return Simulated(self.x[keep], self.response[:, keep], self.failed[:, keep], self.rest[keep], self.by_chain[:, keep])
+
+
 @dataclass
 class Posterior:
     """The posterior of a model: simulated draws with their weights."""
 
     found: Found
-    x: Array = field(default_factory=lambda: np.empty((0, 0)))  # draws, the unknowns and ln(kappa)
+    drawn: Simulated | None = None  # the draws
     weights: Array = field(default_factory=lambda: np.empty(0))
-    response: list[Array] = field(default_factory=list)  # of each drop [draws][KINDS], ln, on the case's mesh; NaN: fails
-    failed: list[Array] = field(default_factory=list)
     rhat: float = math.nan
     effective: float = 0.0
     pareto_k: float = math.nan
     rms: float = math.nan
     left_out: list[tuple[float, float]] = field(default_factory=list)  # log predictive density of each measured drop by the others, and Pareto k
+
+    @property
+    def draws(self) -> Simulated:
+        assert self.drawn is not None
+        return self.drawn
 
     def __post_init__(self) -> None:
         p = self.problem = self.found.problem
@@ -152,46 +183,52 @@ class Posterior:
         share = (kinds[:, None] == kinds[None]) * (0.5 + 0.5 * (drops[:, None] == drops[None]))
         mesh = MESH_PART * np.array([self.offset[d][k] for d, k in places])
         self.model_error, self.mesh_error = share * np.outer(sd, sd), np.outer(mesh, mesh)
-        self.kappa_start = math.log(0.5)
+        slopes = p.bend_slopes(self.found.x)
+        self.slopes = np.array([slopes[d][k] for d, k in places]).reshape(len(places), len(BENDS))
+        self.alike = np.exp(-0.5 * (np.subtract.outer(BENDS, BENDS) / LENGTH) ** 2)
+        self.curve_error = self.slopes @ self.alike @ self.slopes.T
 
-    def error(self, kappa: float) -> Array:
+    def error(self, kappa: float, tau: float) -> Array:
         """Returns the covariance of the errors of the model, of measured numbers and of those to predict."""
-        return np.asarray(kappa**2 * self.model_error + self.mesh_error)
+        return np.asarray(kappa**2 * self.model_error + tau**2 * self.curve_error + self.mesh_error)
+
+    def cover(self, sizes: Array, rows: Array | slice = slice(None)) -> Array:
+        """Returns the covariances of the residuals of measured numbers, [points][rows][rows], by ln(kappa) and ln(tau) [points][2]."""
+        n = len(self.rows)
+        parts = [one[:n, :n][rows][:, rows] for one in (self.noise + self.mesh_error[:n, :n], self.model_error, self.curve_error)]
+        square = np.exp(2 * sizes)[:, :, None, None]
+        return np.asarray(parts[0] + square[:, 0] * parts[1] + square[:, 1] * parts[2])
 
     # ---- densities
 
     def prior(self, x: Array) -> Array:
         """Returns ln of the prior density on the axes of the search, and of kappa."""
-        p, logs = self.problem, np.array([self.problem.logarithm(row) for row in x[:, :-1]])
-        made = -0.5 * (((logs - p.center) / p.sd) ** 2).sum(axis=1) + np.log(np.maximum(np.array([p.log_slope(row) for row in x[:, :-1]]), 1e-300)).sum(axis=1)
-        kappa = np.exp(np.minimum(x[:, -1], 5.0))
-        made += x[:, -1] - 0.5 * (kappa / KAPPA) ** 2
-        inside = np.all((x[:, :-1] > p.low) & (x[:, :-1] < p.high), axis=1) & (x[:, -1] > -7)
+        p, foam, sizes = self.problem, x[:, :-2], x[:, -2:]
+        made = -0.5 * (((p.logarithm(foam) - p.center) / p.sd) ** 2).sum(axis=1) + np.log(np.maximum(p.log_slope(foam), 1e-300)).sum(axis=1)
+        made += (sizes - 0.5 * (np.exp(np.minimum(sizes, 5.0)) / (KAPPA, TAU)) ** 2).sum(axis=1)
+        inside = np.all((foam > p.low) & (foam < p.high), axis=1) & np.all(sizes > (-7, -9), axis=1)
         return np.asarray(np.where(inside, made, -math.inf))
 
-    def likelihood(self, y: Array, rest: Array, kappa: Array) -> Array:
-        """Returns ln of the likelihood of ln(numbers) [points][rows], with half the sum of squares of all other residuals."""
+    def likelihood(self, y: Array, rest: Array, sizes: Array, error: Array | float = 0.0) -> Array:
+        """Returns ln of the likelihood of ln(numbers) [points][rows] with errors of their own, with half the sum of squares of all other residuals."""
         made = -0.5 * rest
-        n = len(self.rows)
-        if n:
-            cover = self.noise + kappa[:, None, None] ** 2 * self.model_error[:n, :n] + self.mesh_error[:n, :n]
-            off = self.data - y
-            made = made - 0.5 * (np.einsum("si,si->s", off, np.linalg.solve(cover, off[..., None])[..., 0]) + np.linalg.slogdet(cover)[1])
+        if self.rows:
+            made = made + normal_density(self.data - y, self.cover(sizes) + np.diag(np.broadcast_to(np.square(error), len(self.rows))))
         return np.asarray(np.where(np.isfinite(made), made, -math.inf))
 
     # ---- simulated foams
 
-    def simulate(self, x: Array) -> tuple[list[Array], list[Array], Array]:
-        """Returns of each drop the responses at points on the case's mesh, and whether it fails; and the sum of squares of samples and tests."""
+    def simulate(self, x: Array, which: int) -> Simulated:
+        """Simulates the first drops at points; the others count as failed."""
         p, count = self.problem, len(self.problem.drops)
         outcomes: list[Any] = [None] * len(x)
-        good = [k for k, row in enumerate(x) if p.makes_foam(row[:-1])]
-        for k, made in zip(good, p.outcomes([(x[k, :-1], range(count)) for k in good], COARSE)):
+        good = [k for k, row in enumerate(x) if p.makes_foam(row[:-2])]
+        for k, made in zip(good, p.outcomes([(x[k, :-2], range(which)) for k in good], COARSE)):
             outcomes[k] = made
         saved, p.offset = p.offset, {}
         response = [np.full((len(x), len(KINDS)), math.nan) for _ in range(count)]
         failed = [np.ones(len(x), dtype=bool) for _ in range(count)]
-        rest = np.zeros(len(x))
+        rest, by_chain = np.zeros(len(x)), np.zeros((count, len(x), len(KINDS)))
         for s, made in enumerate(outcomes):
             if made is None:
                 continue
@@ -199,48 +236,55 @@ class Posterior:
                 failed[d][s] = bool(one.failure)
                 if one.failure:
                     continue
-                y = p.shifted(one, d, COARSE)
+                y, by_chain[d][s] = p.shifted(one, d, COARSE), one.by_chain()
                 response[d][s] = y[:len(KINDS)] + self.offset[d]
                 curve = p.drops[d].curve
                 if curve:
                     rest[s] += float((((y[len(KINDS) + 1:] - curve.value / curve.peak) / curve.sd) ** 2).sum())
-            tests = p.tests(x[s, :-1])
+            tests = p.tests(x[s, :-2])
             rest[s] += float(tests @ tests)
         p.offset = saved
-        return response, failed, rest
+        return Simulated(x, np.array(response), np.array(failed), rest, by_chain)
 
-    def exact(self, x: Array, response: list[Array], failed: list[Array], rest: Array) -> Array:
+    def exact(self, of: Simulated) -> Array:
         """Returns ln of the likelihood of simulated points."""
-        y = np.stack([response[d][:, k] for d, k in self.rows], axis=1) if self.rows else np.empty((len(x), 0))
-        dead = np.zeros(len(x), dtype=bool)
-        for d in range(len(self.problem.measured)):
-            dead |= failed[d]
-        made = self.likelihood(np.nan_to_num(y), rest, np.exp(x[:, -1]))
-        return np.asarray(np.where(dead | ~np.isfinite(y).all(axis=1), -math.inf, made))
+        y = np.stack([of.response[d][:, k] for d, k in self.rows], axis=1) if self.rows else np.empty((len(of.x), 0))
+        dead = of.failed[:len(self.problem.measured)].any(axis=0) | ~np.isfinite(y).all(axis=1)
+        return np.asarray(np.where(dead, -math.inf, self.likelihood(np.nan_to_num(y), of.rest, of.x[:, -2:])))
+
+
+class Effort(NamedTuple):
+    """Foams that are simulated, of the first design, of draws of each chain but the last and of that one; chains; steps of one, and of these not counted."""
+
+    first: int = 100
+    second: int = 70
+    draws: int = 120
+    rounds: int = 3
+    steps: int = 1600
+    burn: int = 500
+
+
+USUAL = Effort()
 
 
 class Emulator:
     """The measured numbers of a model over its unknowns, learnt from simulated points."""
 
-    def __init__(self, posterior: Posterior, x: Array, response: list[Array], failed: list[Array], rest: Array) -> None:
-        self.of, self.mid, self.scale = posterior, x[:, :-1].mean(axis=0), np.maximum(x[:, :-1].std(axis=0), 1e-6)
-        z = (x[:, :-1] - self.mid) / self.scale
-        p = posterior.problem
-        first = len(p.model.unknown) + len(p.chain)
-        dead = np.zeros(len(x), dtype=bool)
-        for d in range(len(p.measured)):
-            dead |= failed[d]
+    def __init__(self, posterior: Posterior, of: Simulated) -> None:
+        self.of, self.mid, self.scale = posterior, of.x[:, :-2].mean(axis=0), np.maximum(of.x[:, :-2].std(axis=0), 1e-6)
+        z, p, rest = (of.x[:, :-2] - self.mid) / self.scale, posterior.problem, of.rest
+        first, dead = len(p.model.unknown) + len(p.chain), of.failed[:len(p.measured)].any(axis=0)
         self.points, self.dead = z, dead
         self.columns, self.surfaces = [], []
         for d, k in posterior.rows:
             columns = [c for c in range(z.shape[1]) if c < first or p.speeds[c - first] == d]
-            y, good = response[d][:, k], ~dead & np.isfinite(response[d][:, k])
+            y, good = of.response[d][:, k], ~dead & np.isfinite(of.response[d][:, k])
             if good.sum() < z.shape[1] + 5:
-                raise NumericError(f"the posterior of {p.model.label}: of {len(x)} foams near the best one {int((~good).sum())} make the drop {p.measured[d].name} fail", 5)
+                raise NumericError(f"the posterior of {p.model.label}: of {len(z)} foams near the best one {int((~good).sum())} make the drop {p.measured[d].name} fail", 5)
             self.columns.append(columns)
             self.surfaces.append(_surface(z[good][:, columns], y[good], True))
         self.rest = _surface(z[~dead], rest[~dead], True) if np.any(rest > 0) else None
-        self.rms = max((one.rms for one in self.surfaces), default=0.0)
+        self.error = np.array([one.rms for one in self.surfaces])
 
     def density(self, x: Array) -> Array:
         """Returns ln of the posterior density, by the emulator."""
@@ -252,13 +296,13 @@ class Emulator:
         return made
 
     def numbers(self, x: Array) -> Array:
-        z = (x[:, :-1] - self.mid) / self.scale
+        z = (x[:, :-2] - self.mid) / self.scale
         return np.stack([one(z[:, columns]) for one, columns in zip(self.surfaces, self.columns)], axis=1) if self.surfaces else np.empty((len(x), 0))
 
     def likelihood(self, x: Array) -> Array:
-        z = (x[:, :-1] - self.mid) / self.scale
+        z = (x[:, :-2] - self.mid) / self.scale
         rest = np.maximum(self.rest(z), 0.0) if self.rest else np.zeros(len(x))
-        made = self.of.likelihood(self.numbers(x), rest, np.exp(x[:, -1]))
+        made = self.of.likelihood(self.numbers(x), rest, x[:, -2:], self.error)
         if self.dead.any():  # where most neighbours fail the foam fails
             apart = ((z[:, None, :] - self.points[None]) ** 2).sum(axis=2)
             near = np.argsort(apart, axis=1)[:, :NEAR]
@@ -266,7 +310,7 @@ class Emulator:
         return np.asarray(made)
 
 
-def _chain(emulator: Emulator, begin: Array, seed: int) -> tuple[Array, float, float]:
+def _chain(emulator: Emulator, begin: Array, seed: int, effort: Effort) -> tuple[Array, float, float]:
     """Returns states of a chain of an ensemble sampler, the largest R-hat over ensembles and parameters, and the least effective size."""
     n, kept, sizes = begin.shape[1], [], []
     walkers = max(2 * n + 2, 32)
@@ -277,8 +321,8 @@ def _chain(emulator: Emulator, begin: Array, seed: int) -> tuple[Array, float, f
         start = begin[random.choice(len(begin), walkers, replace=len(begin) < walkers)] + 1e-3 * random.standard_normal((walkers, n))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            sampler.run_mcmc(start, STEPS, skip_initial_state_check=True)
-            chain = sampler.get_chain(discard=BURN)
+            sampler.run_mcmc(start, effort.steps, skip_initial_state_check=True)
+            chain = sampler.get_chain(discard=effort.burn)
             times = emcee.autocorr.integrated_time(chain, quiet=True)
         sizes.append(chain.shape[0] * walkers / np.maximum(times, 1.0))
         kept.append(chain)
@@ -288,57 +332,74 @@ def _chain(emulator: Emulator, begin: Array, seed: int) -> tuple[Array, float, f
     return np.concatenate([chain.reshape(-1, n) for chain in kept]), float(rhat.max()), float(np.sum(sizes, axis=0).min())
 
 
-def infer(found: Found, tell: Callable[[str], None]) -> Posterior:
+def infer(found: Found, tell: Callable[[str], None], effort: Effort | None = None) -> Posterior:
     """Samples the posterior of a model that was fitted."""
+    effort = effort or USUAL
     made, p = Posterior(found), found.problem
     random, n = np.random.default_rng(p.given.seed), len(found.x)
     covariance = found.covariance / found.scale**2
     cap = p.sd / np.maximum(p.log_slope(found.x), 0.05)  # no wider than the prior
     root = np.linalg.cholesky(covariance + 1e-12 * np.eye(n))
-    z = np.clip(random.standard_normal((FIRST, n)), -2.5, 2.5)
+    z = np.clip(random.standard_normal((effort.first, n)), -2.5, 2.5)
     spread = np.clip(INFLATE * z @ root.T, -2.5 * cap, 2.5 * cap)
-    design = np.column_stack([np.clip(found.x + spread, p.low + 1e-6, p.high - 1e-6), made.kappa_start + 0.5 * random.standard_normal(FIRST)])
-    design[0, :-1] = found.x
-    response, failed, rest = made.simulate(design)
-    for turn in range(2):
-        emulator = Emulator(made, design, response, failed, rest)
-        best = design[np.argsort(-emulator.density(design))[:max(8, len(design) // 3)]]
-        states, made.rhat, made.effective = _chain(emulator, best, p.given.seed + 10 * turn)
-        draws = states[random.choice(len(states), SECOND if turn == 0 else DRAWS, replace=False)]
-        more = made.simulate(draws)
-        if turn == 0:
-            design = np.concatenate([design, draws])
-            response, failed, rest = ([np.concatenate([a, b]) for a, b in zip(response, more[0])], [np.concatenate([a, b]) for a, b in zip(failed, more[1])],
-                                      np.concatenate([rest, more[2]]))
-    made.rms = emulator.rms
-    exact = made.exact(draws, *more)
+    design = np.column_stack([np.clip(found.x + spread, p.low + 1e-6, p.high - 1e-6), math.log(0.5 * KAPPA) + 0.5 * random.standard_normal(effort.first), math.log(0.5 * TAU) + 0.5 * random.standard_normal(effort.first)])
+    design[0, :-2] = found.x
+    known = made.simulate(design, len(p.measured))
+    for turn in range(effort.rounds):
+        known = _near(made, known)
+        emulator = Emulator(made, known)
+        best = known.x[np.argsort(-emulator.density(known.x))[:max(8, len(known.x) // 3)]]
+        states, made.rhat, made.effective = _chain(emulator, best, p.given.seed + 10 * turn, effort)
+        last = turn == effort.rounds - 1
+        draws = made.simulate(states[random.choice(len(states), effort.draws if last else effort.second, replace=False)], len(p.drops if last else p.measured))
+        if not last:
+            known = known.and_these(draws)
+    made.rms, exact = float(emulator.error.max(initial=0.0)), made.exact(draws)
     if not np.isfinite(exact).any():
-        raise NumericError(f"the posterior of {p.model.label}: the measured drops of all {DRAWS} draws fail", 5)
-    weights, made.pareto_k = pareto(exact - emulator.likelihood(draws))
-    made.x, made.weights, made.response, made.failed = draws, weights, more[0], more[1]
+        raise NumericError(f"the posterior of {p.model.label}: the measured drops of all {effort.draws} draws fail", 5)
+    made.weights, made.pareto_k = pareto(exact - emulator.likelihood(draws.x))
+    made.drawn = draws
     _leave_out(made, emulator, states[random.choice(len(states), min(LEAVE_DRAWS, len(states)), replace=False)])
-    tell(f"  posterior: R-hat {made.rhat:.3f}, effective size {made.effective:.0f}; {DRAWS} simulated draws are worth {1 / float((weights**2).sum()):.0f}, Pareto k {made.pareto_k:.2f}; "
+    tell(f"  posterior: R-hat {made.rhat:.3f}, effective size {made.effective:.0f}; {effort.draws} simulated draws are worth {1 / float((made.weights**2).sum()):.0f}, Pareto k {made.pareto_k:.2f}; "
          f"emulator {100 * made.rms:.2f} %")
     return made
 
 
+def _near(made: Posterior, known: Simulated) -> Simulated:
+    """Returns the points of a design that are not far less likely than the best one: an emulator is better without the others."""
+    n = known.x.shape[1] - 2
+    density = made.exact(known) + made.prior(known.x)
+    order = np.argsort(-density)
+    count = int((density > density[order[0]] - n - DEEP_ENOUGH).sum())
+    return known.only(np.sort(order[:max(count, LEAST_POINTS * n)]))
+
+
 def _leave_out(made: Posterior, emulator: Emulator, states: Array) -> None:
     """Fills the log predictive density of each measured drop by the others."""
-    off, kappa = made.data - emulator.numbers(states), np.exp(states[:, -1])
+    off, sizes = made.data - emulator.numbers(states), states[:, -2:]
     for d in range(len(made.problem.measured)):
-        own = np.array([k for k, (drop, _) in enumerate(made.rows) if drop == d], dtype=int)
-        others = np.array([k for k, (drop, _) in enumerate(made.rows) if drop != d], dtype=int)
-        if not len(own) or not len(others):
-            continue
-        n = len(made.rows)
-        cover = made.noise + kappa[:, None, None] ** 2 * made.model_error[:n, :n] + made.mesh_error[:n, :n]
+        own = np.array([drop == d for drop, _ in made.rows])
+        if own.any() and not own.all():
+            others = np.flatnonzero(~own)
+            own_density = normal_density(off, made.cover(sizes)) - normal_density(off[:, others], made.cover(sizes, others))
+            weights, k = pareto(-own_density)
+            made.left_out.append((float(np.log(np.sum(weights * np.exp(own_density - own_density.max()))) + own_density.max()), k))
 
-        def density(rows: Array) -> Array:
-            part, e = cover[:, rows][:, :, rows], off[:, rows]
-            return np.asarray(-0.5 * (np.einsum("si,si->s", e, np.linalg.solve(part, e[..., None])[..., 0]) + np.linalg.slogdet(part)[1] + len(rows) * math.log(2 * math.pi)))
-        own_density = density(np.arange(n)) - density(others)
-        weights, k = pareto(-own_density)
-        made.left_out.append((float(np.log(np.sum(weights * np.exp(own_density - own_density.max()))) + own_density.max()), k))
+
+class Errors(NamedTuple):
+    """What a draw has beside its foam: of each of KINDS an error that all drops share, with what the accelerometer's chain adds, and the standard deviation of a drop's own;
+    and the bend of the curve at BENDS."""
+
+    shared: Array
+    own_sd: Array
+    bend: Array
+
+
+def _normal(cover: Array, cross: Array, base: Array, off: Array, random: np.random.Generator, count: int) -> Array:
+    """Returns draws of normal variables of mean 0, given residuals with covariance `base` and the covariance `cross` with them."""
+    gain = np.linalg.solve(base, cross.T).T if len(base) else np.zeros((len(cover), 0))
+    values, vectors = np.linalg.eigh(cover - gain @ cross.T) if len(cover) else (np.empty(0), np.empty((0, 0)))
+    return np.asarray(gain @ off + random.standard_normal((count, len(cover))) @ (vectors * np.sqrt(np.maximum(values, 0.0))).T)
 
 
 @dataclass
@@ -357,29 +418,25 @@ class Average:
         self.densities, self.weights = sums, (raw / raw.sum()).tolist()
         self._predict()
 
-    def _errors(self, one: Posterior, s: int, random: np.random.Generator) -> tuple[Array, dict[int, tuple[float, float]]]:
-        """Returns errors of the numbers to predict, given the residuals of a draw, [ERRORS][targets]; and of each kind the shared error and the standard deviation of a drop's own."""
-        n, kappa = len(one.rows), math.exp(one.x[s, -1])
-        whole, off = one.error(kappa), one.data - np.array([one.response[d][s, k] for d, k in one.rows])
-        off = np.nan_to_num(off)
-        gain = np.linalg.solve(one.noise + whole[:n, :n], whole[:n, n:]).T if n else np.zeros((len(one.targets), 0))
-        rest = whole[n:, n:] - gain @ whole[:n, n:]
-        values, vectors = np.linalg.eigh(rest) if len(one.targets) else (np.empty(0), np.empty((0, 0)))
-        errors = gain @ off + random.standard_normal((ERRORS, len(one.targets))) @ (vectors * np.sqrt(np.maximum(values, 0.0))).T
-        kinds = np.array([k for _, k in one.rows])
-        shared = {}
-        for k, kind in enumerate(KINDS):
-            size = 0.5 * (kappa * kind.model_sd) ** 2
-            cross = np.where(kinds == k, size, 0.0) if n else np.empty(0)
-            part = np.linalg.solve(one.noise + whole[:n, :n], cross) if n else np.empty(0)
-            mean, variance = float(part @ off) if n else 0.0, size - (float(part @ cross) if n else 0.0)
-            shared[k] = (mean + math.sqrt(max(variance, 0.0)) * random.standard_normal(), math.sqrt(size))
-        return errors, shared
+    def _errors(self, one: Posterior, s: int, random: np.random.Generator) -> tuple[Array, Errors]:
+        """Returns errors of the numbers to predict, given the residuals of a draw, [ERRORS][targets]; and those of the draw as a foam."""
+        n, (kappa, tau) = len(one.rows), np.exp(one.draws.x[s, -2:])
+        whole, off = one.error(kappa, tau), np.nan_to_num(one.data - np.array([one.draws.response[d][s, k] for d, k in one.rows]))
+        base = one.noise + whole[:n, :n]
+        errors = _normal(whole[n:, n:], whole[n:, :n], base, off, random, ERRORS)
+        sd = kappa * np.array([kind.model_sd for kind in KINDS]) / math.sqrt(2)
+        known = np.array([k for _, k in one.rows], dtype=int)
+        first = np.zeros((len(KINDS) + len(BENDS),) * 2)
+        first[:len(KINDS), :len(KINDS)], first[len(KINDS):, len(KINDS):] = np.diag(sd**2), tau**2 * one.alike
+        acts = np.hstack([np.eye(len(KINDS))[known], one.slopes[:n]])
+        drawn = _normal(first, first @ acts.T, base, off, random, 1)[0]
+        chain = one.draws.by_chain[:, s][~one.draws.failed[:, s]]
+        return errors, Errors(drawn[:len(KINDS)] + chain.mean(axis=0), np.hypot(sd, chain.std(axis=0)), drawn[len(KINDS):])
 
     def _predict(self) -> None:
         """Fills values of each number to predict over all models, with their weights."""
         random = np.random.default_rng(self.seed)
-        self.draws: list[tuple[int, int, float, dict[int, tuple[float, float]]]] = []  # model, draw, weight, errors of kinds
+        self.draws: list[tuple[int, int, float, Errors]] = []  # model, draw, weight
         values: dict[tuple[int, int], list[Array]] = {}
         sizes: list[Array] = []
         for m, one in enumerate(self.posteriors):
@@ -388,12 +445,12 @@ class Average:
             for s, weight in enumerate(one.weights):
                 if weight * self.weights[m] < 1e-9:
                     continue
-                errors, shared = self._errors(one, s, random)
-                self.draws.append((m, s, weight * self.weights[m], shared))
+                errors, drawn = self._errors(one, s, random)
+                self.draws.append((m, s, weight * self.weights[m], drawn))
                 sizes.append(np.full(ERRORS, weight * self.weights[m] / ERRORS))
                 for t, (d, k) in enumerate(one.targets):
-                    dead = one.failed[d][s] or not math.isfinite(one.response[d][s, k])
-                    made = np.full(ERRORS, COLLAPSED if KINDS[k].above else math.nan) if dead else np.exp(one.response[d][s, k] + errors[:, t])
+                    dead = one.draws.failed[d][s] or not math.isfinite(one.draws.response[d][s, k])
+                    made = np.full(ERRORS, COLLAPSED if KINDS[k].above else math.nan) if dead else np.exp(one.draws.response[d][s, k] + errors[:, t])
                     values.setdefault((d, k), []).append(made)
         self.values = {key: np.concatenate(parts) for key, parts in values.items()}
         self.sizes = np.concatenate(sizes) if sizes else np.empty(0)
@@ -433,12 +490,12 @@ class Average:
         return value if math.isfinite(value) else math.nan
 
     def _parameters(self, one: Posterior) -> list[tuple[str, str, Array]]:
-        """Returns name, unit and quantiles (SI) of the unknowns of a model, and of kappa."""
+        """Returns name, unit and quantiles (SI) of the unknowns of a model, and of kappa and tau."""
         p, made = one.problem, []
         for k, name in enumerate(p.names):
             unit = p.model.form.parameters[p.model.form.index[name]].unit if name in p.model.form.index else ""
-            made.append((name, unit, quantiles(np.array([Problem.value(name, v) for v in one.x[:, k]]), one.weights)))
-        return [*made, ("kappa", "", quantiles(np.exp(one.x[:, -1]), one.weights))]
+            made.append((name, unit, quantiles(np.array([Problem.value(name, v) for v in one.draws.x[:, k]]), one.weights)))
+        return [*made, *((name, "", quantiles(np.exp(one.draws.x[:, k]), one.weights)) for name, k in (("kappa", -2), ("tau", -1)))]
 
     def summary(self) -> dict[str, Any]:
         """Returns "inference" of fit.json."""
@@ -487,8 +544,8 @@ class Average:
 
     # ---- draws
 
-    def chosen(self) -> list[tuple[int, int, dict[int, tuple[float, float]]]]:
-        """Returns equally likely draws, model by model: model, draw, errors of the responses."""
+    def chosen(self) -> list[tuple[int, int, Errors]]:
+        """Returns equally likely draws, model by model: model, draw, its errors."""
         weights = np.array([weight for _, _, weight, _ in self.draws])
         places = (np.arange(OUTPUT_DRAWS) + 0.5) / OUTPUT_DRAWS
         at = np.searchsorted(np.cumsum(weights) / weights.sum(), places)
@@ -501,13 +558,13 @@ class Average:
             for u in one.problem.model.unknown if one else []:
                 about = one.problem.model.form.parameters[one.problem.model.form.index[u.name]]  # type: ignore[union-attr]
                 names[u.name] = (f"{u.name} ({about.unit})" if about.unit else u.name, about.per_unit)
-        rows = [["draw", "model", "kappa", *(heading for heading, _ in names.values()), *(key for kind in KINDS for key in (f"{kind.error}_error", f"{kind.error}_error_sd"))]]
+        rows = [["draw", "model", "kappa", "tau", *(heading for heading, _ in names.values()), *(key for kind in KINDS for key in (f"{kind.error}_error", f"{kind.error}_error_sd"))]]
         for number, (m, s, errors) in enumerate(self.chosen(), 1):
             one = self.posteriors[m]
             assert one is not None
-            at = {name: Problem.value(name, one.x[s, k]) for k, name in enumerate(one.problem.names)}
-            rows.append([str(number), self.labels[m], f"{math.exp(one.x[s, -1]):.6g}", *(f"{at[name] / per:.9g}" if name in at else "" for name, (_, per) in names.items()),
-                         *(f"{value:.9g}" for k in range(len(KINDS)) for value in errors[k])])
+            at = {name: Problem.value(name, one.draws.x[s, k]) for k, name in enumerate(one.problem.names)}
+            rows.append([str(number), self.labels[m], f"{math.exp(one.draws.x[s, -2]):.6g}", f"{math.exp(one.draws.x[s, -1]):.6g}", *(f"{at[name] / per:.9g}" if name in at else "" for name, (_, per) in names.items()),
+                         *(f"{value:.9g}" for pair in zip(errors.shared, errors.own_sd) for value in pair)])
         return rows
 
     def write_draws(self, folder: str, write: Callable[[str, str], None], read: Callable[[str], str]) -> None:
@@ -516,8 +573,10 @@ class Average:
             one = self.posteriors[m]
             assert one is not None
             name, p = f"draw-{number:03d}", one.problem
-            p.model.form.foam(p.foam_values(one.x[s, :-1])).write(folder, name, f"Draw {number} of {OUTPUT_DRAWS} of a posterior of softfall fit, equally likely.", "")
-            lines = "".join(f"    {kind.error} = {errors[k][0]:.12g}; {kind.error}_sd = {errors[k][1]:.12g};\n" for k, kind in enumerate(KINDS))
+            foam = p.model.form.foam(p.foam_values(one.draws.x[s, :-2]))
+            foam.bend(BENDS, errors.bend)
+            foam.write(folder, name, f"Draw {number} of {OUTPUT_DRAWS} of a posterior of softfall fit, equally likely.", "")
+            lines = "".join(f"    {kind.error} = {errors.shared[k]:.12g}; {kind.error}_sd = {errors.own_sd[k]:.12g};\n" for k, kind in enumerate(KINDS))
             write(f"{folder}/{name}.cfg", read(f"{folder}/{name}.cfg") + "# Errors of ln(number) of a drop beside the foam: one that all drops share, and the standard deviation of each drop's "
                   f"own.\nresponse_error = {{\n{lines}}};\n")
 

@@ -15,17 +15,20 @@ from scipy.optimize import least_squares
 
 from ..array import Array
 from ..errors import Error, NumericError
-from .drops import COARSE, OWN, SECTION, Bench, Outcome
+from .drops import COARSE, OWN, SECTION, Bench, Outcome, Wanted
 from .input import CHAIN, KINDS, Input, Model
+from .work import BENDS
 
 STARTS, SPREAD = 3, 0.7  # searches, and how far they begin from the start values, in standard deviations of the prior
 STEP, LEAST_STEP, MOST_STEP = 0.05, 0.01, 0.1  # of differences: part of a standard deviation of the prior, and its bounds
 ROUNDS, MOST_CALLS, FINE_CALLS = 6, 25, 10
 STILL = 0.03  # standard deviations of the prior: a round that moves the unknowns by less was the last
+NEAR = 0.3  # standard deviations of the prior: ratios to the cases' own drops hold as far
 GAIN = 0.1  # fall of the objective that is still expected: more is told, and has not converged
 DEEP, DEEP_SD = 0.94, 0.003  # indentation over the thickness, from where the missile all but reaches the anvil
 TOO_FAR = 10.0  # root of the misfit per degree of freedom
 ON_BOUND, ALL_RETURNED = 1e-3, 0.999  # on the axis of the search; an HU that is 1
+BEND = 0.03  # ln of the stress, of a difference
 START_TRIES = 20  # starts that are tried for one that works
 
 
@@ -43,6 +46,7 @@ class Problem:
         self.chain = [k for k in range(3) if given.chain_sd[k] > 0]
         self.speeds = [d for d, drop in enumerate(self.measured) if drop.speed_sd > 0]
         self.names = [u.name for u in foam] + [CHAIN[k] for k in self.chain] + [f"speed of {self.measured[d].name}" for d in self.speeds]
+        self.logit = np.array([name == "HU" for name in self.names])
         self.sd = np.array([u.sd for u in foam] + [given.chain_sd[k] for k in self.chain] + [self.measured[d].speed_sd for d in self.speeds])
         self.start = np.array([self.transform(u.name, u.start) for u in foam] + [0.0] * (len(self.chain) + len(self.speeds)))
         self.low = np.array([self.transform(u.name, u.low) for u in foam] + [-1.0] * (len(self.chain) + len(self.speeds)))
@@ -66,16 +70,12 @@ class Problem:
         return 1 / (1 + math.exp(-x)) if name == "HU" else math.exp(x)
 
     def logarithm(self, x: Array) -> Array:
-        """Returns ln of the unknowns, by which the priors hold."""
-        made = np.array(x, dtype=float)
-        for k, name in enumerate(self.names):
-            if name == "HU":
-                made[k] = -np.logaddexp(0.0, -x[k])
-        return made
+        """Returns ln of the unknowns [points][unknowns], by which the priors hold."""
+        return np.where(self.logit, -np.logaddexp(0.0, -x), x)
 
     def log_slope(self, x: Array) -> Array:
         """Returns the derivatives of the logarithms by the places."""
-        return np.array([1 - self.value(name, v) if name == "HU" else 1.0 for name, v in zip(self.names, x)])
+        return np.where(self.logit, 1 / (1 + np.exp(np.minimum(x, 700.0))), 1.0)
 
     def foam_values(self, x: Array) -> Array:
         values = self.model.start.copy()
@@ -111,9 +111,21 @@ class Problem:
 
     def outcomes(self, points: Sequence[tuple[Array, Sequence[int]]], mesh: str, given_speed: bool = False) -> list[list[Outcome]]:
         """Returns the outcomes of drops, by their numbers, at points."""
-        wanted = [(self.drops[d], mesh, self.model, self.foam_values(x), 1.0 if given_speed else self.speed_of(x, d), self.chain_of(x)) for x, which in points for d in which]
-        made = iter(self.bench.run(wanted))
+        made = iter(self.bench.run([self._wanted(x, d, mesh, given_speed) for x, which in points for d in which]))
         return [[next(made) for _ in which] for _, which in points]
+
+    def _wanted(self, x: Array, d: int, mesh: str, given_speed: bool = False, bend: Sequence[float] = ()) -> Wanted:
+        return Wanted(self.drops[d], mesh, self.model, self.foam_values(x), 1.0 if given_speed else self.speed_of(x, d), self.chain_of(x), bend)
+
+    def bend_slopes(self, x: Array) -> list[Array]:
+        """Returns of each drop the derivatives of the numbers by ln of the stress at BENDS, [KINDS][BENDS]; 0 where they are not defined."""
+        bends, count = BEND * np.eye(len(BENDS)), range(len(self.drops))
+        made = self.bench.run([self._wanted(x, d, COARSE, False, bend.tolist()) for d in count for bend in (0 * bends[0], *bends)])
+        slopes = []
+        for d in count:
+            base, *bent = (np.full(len(KINDS), math.nan) if one.failure else one.logs() for one in made[d * (len(BENDS) + 1):(d + 1) * (len(BENDS) + 1)])
+            slopes.append(np.nan_to_num((np.array(bent) - base).T / BEND))
+        return slopes
 
     def shifted(self, outcome: Outcome, d: int, mesh: str) -> Array:
         """Returns the response of a drop: ln of the numbers, ln of the indentation over the thickness, samples over their peak; NaN: not defined."""
@@ -350,11 +362,9 @@ def shift_of(problem: Problem, x: Array, mesh: str, to: str) -> list[Array]:
 def find(problem: Problem, tell: Callable[[str], None]) -> Found:
     """Finds the foam of a model: several searches on the coarse mesh, then the best one with the ratios to the section's and the cases' own drops."""
     x, starts = _starts(problem, np.random.default_rng(problem.given.seed), tell)
-    own_shift: list[Array] | None = None
+    own_shift, at = shift_of(problem, x, SECTION, OWN), x  # it hardly changes; the end of the search finds it anew
     for turn in range(ROUNDS):
         section = shift_of(problem, x, COARSE, SECTION)
-        if own_shift is None:  # it hardly changes; the end of the search finds it anew
-            own_shift = shift_of(problem, x, SECTION, OWN)
         problem.offset = {COARSE: [a + b for a, b in zip(section, own_shift)], SECTION: own_shift}
         before = x
         x, objective, _ = _search(problem, x, COARSE, MOST_CALLS)
@@ -362,14 +372,15 @@ def find(problem: Problem, tell: Callable[[str], None]) -> Found:
         tell(f"  round {turn + 1}: objective {objective:.3f}")
         if moved < STILL:
             break
-    return _judge(problem, x, starts, tell)
+    return _judge(problem, x, at, starts, tell)
 
 
-def _judge(problem: Problem, x: Array, starts: list[tuple[float, str]], tell: Callable[[str], None]) -> Found:
-    """Ends a search on the section's drops: steps until no gain is expected, with the ratios to the cases' own drops at that place."""
+def _judge(problem: Problem, x: Array, at: Array, starts: list[tuple[float, str]], tell: Callable[[str], None]) -> Found:
+    """Ends a search on the section's drops: steps until no gain is expected, with the ratios to the cases' own drops near that place, at first those at `at`."""
     predicted = [d for d, drop in enumerate(problem.drops) if drop.predicted]
     for turn in range(ROUNDS):
-        problem.offset[SECTION] = shift_of(problem, x, SECTION, OWN)
+        if np.max(np.abs(x - at) / problem.sd) > NEAR:
+            problem.offset[SECTION], at = shift_of(problem, x, SECTION, OWN), x
         residual = problem.residual(x, SECTION)
         if not np.isfinite(residual).all():
             raise NumericError(f"the model {problem.model.label}: {_first_failure(problem, x)}", 5)

@@ -32,6 +32,10 @@ class Task(NamedTuple):
     samples: list[float]  # s after contact, of the curve
     sampled: int  # the drop of the series whose curve is read
     channel_class: float
+    bend: list[float]  # ln of the stress over that of the form, at BENDS; empty: as the form
+
+
+BENDS = [round(0.05 + 0.1 * k, 2) for k in range(10)]  # strains
 
 
 @functools.lru_cache(maxsize=None)
@@ -74,6 +78,7 @@ def _read(drop: c.c_void_p, task: Task, number: int, thickness: float) -> DropFi
     if math.isfinite(figures["v_rebound_m_s"]):
         told["contact_time_ms"] = 1e3 * float(seconds[min(int(np.flatnonzero(raw)[-1]) + 1, len(raw) - 1)]) - figures["contact_time_ms"]
     kept = {key: figures[key] for key in ("a_max_scatter", "hic_scatter", "max_local_strain", "energy_error", "a_max_mesh_error")}
+    told |= {f"raw_{key}": told[key] for key in ("a_max_g", "HIC", "HIC_window_ms")}
     if any(task.chain[k] > 0 for k in (0, 2)) or (task.samples and number == task.sampled):
         read = library.reading(seconds, raw, task.chain, 1000.0)[0]
         contact = library.reading(seconds, raw, task.chain, task.channel_class or 1000.0)[1]
@@ -92,6 +97,8 @@ def simulate(task: Task, share: str) -> Answer:
     variant, made = c.c_void_p(), list[c.c_void_p]()
     try:
         one, foam = built(task.case, tuple(task.overrides), share), _form(*task.form).foam(task.values)
+        if task.bend:
+            foam.bend(BENDS, task.bend)
         library._call("softfall_model_vary", one.handle, c.byref(memory._Variant(task.speed, 0.0, 0.0, foam.handle)), c.byref(variant))
         for number, interval in enumerate(one.intervals, 1):
             drop = c.c_void_p()

@@ -193,10 +193,6 @@ static sf_status check_history(sf_results *r, const int64_t *rows, sf_error *err
 
 /* ---- reading ---- */
 
-double sf_results_fall_speed(const sf_results *r) {
-    return -r->missile_speed * r->missile_direction[2];
-}
-
 void sf_results_place(const sf_results *r, const sf_frame_head *head, const double x[3], double out[3]) {
     double arm[3];
     sf_sub3(x, r->missile_centre, arm);

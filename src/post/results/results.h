@@ -135,8 +135,6 @@ static inline double sf_results_along(const sf_results *results, const double ve
 }
 /* Finds the position in that frame of the missile's point that was at x (m) at t = 0. */
 void sf_results_place(const sf_results *results, const sf_frame_head *head, const double x[3], double out[3]);
-/* Speed of the missile downwards, along -z, at t = 0, m s-1. */
-double sf_results_fall_speed(const sf_results *results);
 /* Modelled parts that make the whole pad: see sf_model_whole. */
 double sf_results_whole(const sf_results *results);
 /* Mean cross-section of the whole pad, its volume over its thickness, m2. */
