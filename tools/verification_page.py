@@ -72,8 +72,8 @@ def nearness(measured, required):
 def write_list(what, items):
     """A sentence of the checks, each (name, value as shown, required, nearness): of more than two the two nearest to their bounds."""
     shown = items if len(items) <= 2 else sorted(items, key=lambda item: -item[3])[:2]
-    nearest = "" if len(shown) == len(items) else f", the nearest to their bounds of {len(items)}"
-    return [f"Required{what}{nearest}: " + "; ".join(f"{name}: **{value}** ({required})" for name, value, required, _ in shown) + ".", ""]
+    share = "" if len(shown) == len(items) else f" ({len(shown)} of {len(items)} checks)"
+    return [f"Required{what}{share}: " + "; ".join(f"{name}: **{value}** ({required})" for name, value, required, _ in shown) + ".", ""]
 
 
 def write_matrix(names, cases):
@@ -143,7 +143,7 @@ def shorten(text, path):
                 page += [SENTENCE_END.split(block)[0], ""]
             first = False
         if not linked and page and page[0].startswith("## ") and (len(page) > 2 or len(blocks) == 1):
-            page[2:2] = [f"([The whole section](images/verification/{path.name}))", ""]
+            page[2:2] = [f"[All checks and tables](images/verification/{path.name})", ""]
             linked = True
     return re.sub(r"\n{3,}", "\n\n", "\n".join(page)).strip() + "\n"
 
