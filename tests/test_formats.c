@@ -73,7 +73,7 @@ static void put_components(FILE *f, const component *of, int count, const char *
 enum { MOST_COMPONENTS = 4 };
 
 static void put_history(FILE *f) {
-    fputs("| dataset | units | in history.csv | meaning |\n|---|---|---|---|\n", f);
+    fputs("| dataset | units | meaning |\n|---|---|---|\n", f);
     for (int k = 0, count; k < SF_HISTORY_COUNT; k += count) {
         const sf_history_column *c = sf_history_column_get(k);
         component of[MOST_COMPONENTS] = {component_of(c->name, c->description)};
@@ -85,20 +85,19 @@ static void put_history(FILE *f) {
                 break;
             fprintf(f, ", `%s`", next->name);
         }
-        fprintf(f, " | %s | %s%s%s | ", strcmp(c->units, "1") == 0 ? "" : c->units, c->csv ? "`" : "",
-                c->csv ? c->csv : "raw and filtered", c->csv ? "`" : "");
+        fprintf(f, " | %s | ", strcmp(c->units, "1") == 0 ? "" : c->units);
         put_components(f, of, count, c->remark);
     }
 }
 
 static void put_frame_fields(FILE *f) {
-    fputs("| dataset | shape | units | in pad.xdmf | meaning |\n|---|---|---|---|---|\n", f);
+    fputs("| dataset | shape | units | meaning |\n|---|---|---|---|\n", f);
     for (int k = 0; k < SF_FRAME_FIELDS; k++) {
         const sf_frame_field_info *i = sf_frame_field_get((sf_frame_field)k);
         fprintf(f, "| `%s` | (n", i->name);
         if (i->components > 1)
             fprintf(f, ", %d", i->components);
-        fprintf(f, ") | %s | `%s` | ", strcmp(i->units, "1") == 0 ? "" : i->units, i->array);
+        fprintf(f, ") | %s | ", strcmp(i->units, "1") == 0 ? "" : i->units);
         put_meaning(f, i->description, i->remark);
     }
 }
@@ -142,23 +141,10 @@ static void put_good_record(FILE *f) {
     SF_GOOD_RECORD(RECORD_ROW)
 }
 
-/* Path of the scalar that counts the rows of an array. */
-static const char *count_path(size_t offset) {
-    size_t count;
-    const sf_model_field *field = sf_model_fields(&count);
-    for (size_t k = 0; k < count; k++)
-        if (field[k].rows_offset == SIZE_MAX && field[k].offset == offset)
-            return field[k].path;
-    fail_msg("an array of the model has no count");
-    return NULL;
-}
-
 static void put_model(FILE *f) {
-    static const char *const types[] = {
-        [SF_H5_F64] = "f64", [SF_H5_I32] = "i32", [SF_H5_I64] = "i64", [SF_H5_U8] = "u8"};
     size_t count;
     const sf_model_field *field = sf_model_fields(&count);
-    fputs("| dataset | type | shape | units | meaning |\n|---|---|---|---|---|\n", f);
+    fputs("| dataset | units | meaning |\n|---|---|---|\n", f);
     for (size_t k = 0, n; k < count; k += n) {
         const sf_model_field *m = &field[k];
         component of[MOST_COMPONENTS] = {component_of(m->path, m->description)};
@@ -168,13 +154,6 @@ static void put_model(FILE *f) {
             if (!are_one_vector(&of[0], &of[n]) || strcmp(m->units, m[n].units) != 0)
                 break;
             fprintf(f, ", `_%s`", of[n].end);
-        }
-        fprintf(f, " | %s | ", m->type == SF_H5_F64 ? "" : types[m->type]);
-        if (m->rows_offset != SIZE_MAX) {
-            fprintf(f, "(`%s`%s", count_path(m->rows_offset), m->rows_extra ? " + 1" : "");
-            if (m->columns > 1)
-                fprintf(f, ", %d", m->columns);
-            fputc(')', f);
         }
         fprintf(f, " | %s | ", strcmp(m->units, "1") == 0 ? "" : m->units);
         put_components(f, of, (int)n, "");

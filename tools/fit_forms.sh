@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Fits each model of examples/fit/eva35_lock_70.cfg alone, without chains: to the five drops of eva35_five_drops.inc, to them with a lock-up
 # of its own, also with the accelerometer's mount as an unknown, and to the three drops on the 70 mm pad with a lock-up, on meshes of SPACING
-# under the missile. Prints the table of docs/validation.md, "Fits that converge": simulations, misfit, the largest differences of a_max,
+# under the missile. Prints a table (docs/validation.md, "Fits that converge"): simulations, misfit, the largest differences of a_max,
 # HIC and its window to the measured ones over the drops of the fit, at the speeds as given and as fitted, and whether the fit converged. Below 10 mm each fit begins with
 # drops on meshes of 10 mm (coarse_set); their simulations stand behind a plus. Resumes.
 #

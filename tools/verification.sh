@@ -42,15 +42,14 @@ done
     cat <<'TEXT'
 # Verification
 
-Does softfall solve the equations that [theory.md](theory.md) states? Yes, to rounding where an identity holds, with the expected order where a discretisation converges, and within stated bounds against closed forms and CalculiX. Each study of
-`verify/` measures, compares with its bounds, and fails if it misses one: all have passed. Whether the equations describe a pad is the question of [validation.md](validation.md).
+Does softfall solve the equations that [theory.md](theory.md) states? Yes, to rounding where an identity holds, with the expected order where a discretisation converges, and within stated bounds against closed forms and CalculiX.
+Each study of `verify/` fails if it misses one of its bounds: all have passed. Whether the equations describe a pad is the question of [validation.md](validation.md).
 
     tools/verification.sh            # runs all studies and writes this page, or: tools/verification.sh NAME...
     tools/verification.sh --ran      # takes what the last ./setup.sh test and ./setup.sh slow of this tree left
 
-`ctest --test-dir build -L verify` runs the short studies, with `-L slow` the long ones (base, calculix, hyperfoam, mesh, sensitivity). The row of the Debug build needs `cmake --preset debug && cmake --build build-debug` and then
-`tools/verification.sh reproducibility`. Bold is measured, its bound stands in brackets; of more than four checks the three nearest to their bounds are shown. The sections, with all tables, are in `docs/images/verification`. Wall times depend on the machine; all other figures repeat to the last digit on one
-machine.
+`ctest --test-dir build -L verify` runs the short studies, with `-L slow` the long ones. Bold is measured, its bound stands in brackets; of more than two checks the two nearest to their bounds are shown. The sections
+in `docs/images/verification` have all of them, and all tables. Wall times depend on the machine; all other figures repeat to the last digit on one machine. The row of the Debug build needs `build-debug`.
 
 TEXT
     written=()

@@ -175,11 +175,9 @@ static void describe(sf_study *s, const sf_indentation *in) {
         s,
         "### Indentation\n\nThe sphere and the quarter pad of the study above, with ν = %g in both terms. The bound "
         "of 2 %% is for CalculiX's contact *node to surface*, which keeps the nodes of the pad's top out of the "
-        "sphere, as softfall does. *Face to face* keeps the faces between them out, too: their corners lie up to h² "
-        "/ 4R deeper (0.08 mm at 5 mm, where the force grows by 9 to 75 %% per mm), and it depends on its increments "
-        "(up to 0.75 %% on 10 mm). Node to surface diverges at some depth: at 5 mm it reaches the prescribed 30 mm, "
-        "at 7.14 mm it does not, so the depth is checked at 5 mm only. The bound and this choice were made after "
-        "face to face had shown 1.8 to 3.7 %% at 5 mm.\n\n",
+        "sphere, as softfall does; *face to face* keeps the faces between them out, too, up to h² / 4R deeper. Node "
+        "to surface diverges before 30 mm at 7.14 mm, so the depth is checked at 5 mm only. The bound and this choice "
+        "were made after face to face had shown 1.8 to 3.7 %% at 5 mm.\n\n",
         in->law.nu[0]);
 }
 

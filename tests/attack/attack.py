@@ -3,7 +3,7 @@
 """Attacks the programs and prints counts: tests/attack/attack.py [--seed N] [--scale F] [PART...]
 
 Parts: flips kills faults limits physics geometries (all of them by default). The programs are those of SF_BIN_DIR, or of build/bin.
-Exit code 0 if no attack found a fault; docs/reliability.md has the table of the last run."""
+Exit code 0 if no attack found a fault; docs/reliability.md has the counts of the last run."""
 import argparse
 import concurrent.futures
 import os
