@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drops of foams for a fit: kept by content, simulated by processes side by side, on three meshes.
 
-A search takes the drop on the section of the pad and on a coarse mesh, which cost a twentieth and a hundredth of that of the case. What the case's own drop
-says beyond these is a ratio, which changes little from foam to foam and is found anew when the search has ended.
+A case whose drop is one of a body of revolution on a plate is simulated on the section of its pad, with its spacing; a search takes a coarser mesh of it. Of another case
+it takes the section or a coarser mesh, too, where there is one: what the case's own drop says beyond these is a ratio, which changes little from foam to foam and is found
+anew when the search has ended.
 """
 from __future__ import annotations
 
@@ -29,7 +30,7 @@ from . import work
 from .input import KINDS, Drop, Input, Model
 from .work import Task
 
-OWN, SECTION, COARSE = "own", "section", "coarse"  # meshes, from the case's own to the cheapest
+OWN, SECTION, COARSE = "own", "section", "coarse"  # meshes, from that which is told to the cheapest
 COARSER = (2.0, 1.5)  # times the spacing, the first that the geometry takes
 GRID = [round(0.25e-3 * k, 8) for k in range(161)]  # s after contact, of curves that are shown
 _SECTION = ["geometry.model=axisymmetric", "pad.mesh_error_limit=1e6"]
@@ -135,7 +136,7 @@ class Bench:
     def _find_mesh(self, drop: Drop, mesh: str) -> list[str]:
         material = f"material=@{self.given.material}"
         factors = [f"geometry.spacing_factor={factor:g}" for factor in COARSER]
-        cheaper: dict[str, list[list[str]]] = {OWN: [], SECTION: [_SECTION], COARSE: [[*_SECTION, *self.given.coarse], self.given.coarse] if self.given.coarse else
+        cheaper: dict[str, list[list[str]]] = {OWN: [_SECTION], SECTION: [_SECTION], COARSE: [[*_SECTION, *self.given.coarse], self.given.coarse] if self.given.coarse else
                  [*([*_SECTION, one] for one in factors), _SECTION, *([one, "pad.mesh_error_limit=1e6"] for one in factors)]}
         for overrides in cheaper[mesh]:
             try:
