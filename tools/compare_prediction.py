@@ -4,18 +4,17 @@
 
     tools/compare_prediction.py [PAGE.md]
 
-Reads out/eva35/fit.json, out/cfh50/cfh.json and out/cfh70/cfh.json (tools/identify_examples.sh makes them) and examples/data, and
-prints the tables, or writes them into a copy of docs/validation.md in place of those between `<!-- comparison -->` and `<!-- end -->`.
+Reads fit.json of out/eva35 (the drops on 70 mm) and out/eva35_four (with the drop on 50 mm at 4.5 m/s), out/cfh50/cfh.json and
+out/cfh70/cfh.json (tools/identify_examples.sh makes them) and examples/data, and prints the tables, or writes them into the page in place of
+those between `<!-- comparison by softfall fit -->` and `<!-- end -->`.
 """
 import csv
 import json
+import math
 import sys
 
-# The first form of the foam (examples/fit/eva35_drops.cfg), as it was predicted before the measurements were looked at.
-FIRST = {"4.5": {"a_max_g": 93.2, "HIC": 308}, "5.2": {"a_max_g": 138.7, "HIC": 616}}
-FIRST_HEIGHT = {"50": 2.05, "70": 2.98}
-ROWS = (("a_max (g)", "a_max_g", "a_max_real_g", "a_max_sim_g", "%.1f"), ("HIC", "HIC", "HIC_real", "HIC_sim", "%.0f"),
-        ("HIC window (ms)", "HIC_window_ms", None, None, "%.2f"))
+MARK = "<!-- comparison by softfall fit -->\n"
+ROWS = (("a_max (g)", "a_max_g", "a_max_real_g", "%.1f"), ("HIC", "HIC", "HIC_real", "%.0f"), ("HIC window (ms)", "HIC_window_ms", None, "%.2f"))
 
 
 def read(path):
@@ -23,48 +22,46 @@ def read(path):
         return list(csv.DictReader(line for line in stream if not line.startswith("#")))
 
 
-def off(value, measured):
-    return "%+.1f %%" % (100 * (value / measured - 1))
+def predictions(folder):
+    with open(f"out/{folder}/fit.json") as stream:
+        return {(p["drop"], p["quantity"]): p for p in json.load(stream)["inference"]["predictions"]}
 
 
-def verdict(measured, low, high):
-    inside = (low is not None and low <= measured) and (high is None or measured <= high)  # None: open above
-    return "yes" if inside else "**no**"
+def holds(measured, p):
+    return p["low90"] <= measured <= (p["high90"] if p["high90"] is not None else math.inf)
 
 
-def interval(form, low, high):
-    return "open above" if low is None else "from " + form % low + ", open above" if high is None else (form + " to " + form) % (low, high)
+def interval(form, p):
+    if p["high90"] is None:
+        return (form + ", open above") % p["low90"], "–"
+    return (form + " to " + form) % (p["low90"], p["high90"]), "%.0f %%" % (100 * (p["high90"] - p["low90"]) / p["median"])
 
 
 def drops():
-    with open("out/eva35/fit.json") as stream:
-        fit = json.load(stream)
-    found = {(p["drop"], p["quantity"]): p for p in fit["inference"]["predictions"]}
-    yield "| drop | quantity | measured | LS-DYNA (paper) | | first form | | second form | | 95 % | holds it |"
-    yield "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---|"
+    three, four = predictions("eva35"), predictions("eva35_four")
+    yield "| drop | quantity | measured | median | 90 % | width | holds it | forms that hold it alone | with eva50-v4.5 in the fit: 90 % | width | holds it |"
+    yield "|---|---|---:|---:|---:|---:|---|---:|---:|---:|---|"
     for row in read("examples/data/penta2018_table2_50mm.csv"):
-        speed = row["v_test_m_s"]
-        for name, key, real, simulated, form in ROWS:
-            p = found["eva50-v" + speed, key]
+        drop = "eva50-v" + row["v_test_m_s"]
+        for name, key, real, form in ROWS:
+            p, after = three[drop, key], four.get((drop, key))
             measured = float(row[real]) if real else float(row["t_f_ms"]) - float(row["t_i_ms"])
-            others = []
-            for value in (float(row[simulated]) if simulated else None, FIRST[speed].get(key), p["median"]):
-                others += ["–", ""] if value is None else [form % value, off(value, measured)]
-            yield "| " + " | ".join(["eva50-v" + speed, name, form % measured, *others,
-                                     interval(form, p["low95"], p["high95"]), verdict(measured, p["low95"], p["high95"])]) + " |"
+            alone = [holds(measured, one) for one in p["by_model"]]
+            cells = [drop, name, form % measured, form % p["median"], *interval(form, p), "yes" if holds(measured, p) else "**no**", "%d of %d" % (sum(alone), len(alone))]
+            cells += [*interval(form, after), "yes" if holds(measured, after) else "**no**"] if after else ["fitted", "", ""]
+            yield "| " + " | ".join(cells) + " |"
 
 
 def heights():
-    yield "| pad (mm) | critical fall height on the rig, measured (m) | first form (m) | | second form (m) | | 95 % (m) | holds it |"
-    yield "|---:|---:|---:|---:|---:|---:|---:|---|"
+    yield "| pad (mm) | critical fall height on the rig, measured (m) | at least (95 %) | median | 95 % | holds it |"
+    yield "|---:|---:|---:|---:|---:|---|"
     for row in read("examples/data/penta2018_critical_heights.csv"):
-        pad, measured = row["thickness_mm"], float(row["critical_height_m"])
-        with open("out/cfh%s/cfh.json" % pad) as stream:
+        measured = float(row["critical_height_m"])
+        with open("out/cfh%s/cfh.json" % row["thickness_mm"]) as stream:
             found = json.load(stream)["critical_fall_height"]
-        low, middle, high = (found["rig_height_" + suffix + "_m"] for suffix in ("low", "median", "high"))
-        yield "| %s | %.3f | %.2f | %s | %.2f | %s | %.2f to %.2f | %s |" % (
-            pad, measured, FIRST_HEIGHT[pad], off(FIRST_HEIGHT[pad], measured), middle, off(middle, measured), low, high,
-            verdict(measured, low, high))
+        least, low, middle, high = (found["rig_" + key + "_m"] for key in ("at_least", "height_low", "height_median", "height_high"))
+        yield "| %s | %.3f | %.2f | %.2f | %.2f to %s | %s |" % (row["thickness_mm"], measured, math.floor(100 * least) / 100, middle, low, "open" if high is None else "%.2f" % high,
+                                                           "yes" if low <= measured <= (high or math.inf) else "**no**")
 
 
 text = "\n".join([*drops(), "", *heights()])
@@ -72,6 +69,6 @@ if len(sys.argv) < 2:
     print(text)
 else:
     with open(sys.argv[1]) as stream:
-        before, rest = stream.read().split("<!-- comparison -->\n", 1)
+        before, rest = stream.read().split(MARK, 1)
     with open(sys.argv[1], "w") as stream:
-        stream.write(before + "<!-- comparison -->\n" + text + "\n<!-- end -->" + rest.split("<!-- end -->", 1)[1])
+        stream.write(before + MARK + text + "\n<!-- end -->" + rest.split("<!-- end -->", 1)[1])

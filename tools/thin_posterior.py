@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Takes COUNT draws of a posterior of softfall-fit drop, in the middle of equal parts of it (the draws stand model by
+"""Takes COUNT draws of a posterior of softfall fit, in the middle of equal parts of it (the draws stand model by
 model), as a posterior of its own.
 
     tools/thin_posterior.py out/eva35/posterior 100 examples/materials/eva35_posterior"""

@@ -439,6 +439,7 @@ class Average:
         self.draws: list[tuple[int, int, float, Errors]] = []  # model, draw, weight
         values: dict[tuple[int, int], list[Array]] = {}
         sizes: list[Array] = []
+        models: list[int] = []
         for m, one in enumerate(self.posteriors):
             if one is None or self.weights[m] < 1e-6:
                 continue
@@ -448,20 +449,23 @@ class Average:
                 errors, drawn = self._errors(one, s, random)
                 self.draws.append((m, s, weight * self.weights[m], drawn))
                 sizes.append(np.full(ERRORS, weight * self.weights[m] / ERRORS))
+                models += ERRORS * [m]
                 for t, (d, k) in enumerate(one.targets):
                     dead = one.draws.failed[d][s] or not math.isfinite(one.draws.response[d][s, k])
                     made = np.full(ERRORS, COLLAPSED if KINDS[k].above else math.nan) if dead else np.exp(one.draws.response[d][s, k] + errors[:, t])
                     values.setdefault((d, k), []).append(made)
         self.values = {key: np.concatenate(parts) for key, parts in values.items()}
-        self.sizes = np.concatenate(sizes) if sizes else np.empty(0)
+        self.sizes, self.model_of = np.concatenate(sizes) if sizes else np.empty(0), np.array(models)
 
     @property
     def first(self) -> Posterior:
         return next(one for one in self.posteriors if one is not None)
 
-    def quantile(self, d: int, k: int, scatter: float = 0.0) -> Array:
-        """Returns the quantiles TAIL of a number of a drop, of a single pad and drop with their scatter; NaN: not defined."""
+    def quantile(self, d: int, k: int, scatter: float = 0.0, model: int | None = None) -> Array:
+        """Returns the quantiles TAIL of a number of a drop, of a single pad and drop with their scatter, by one model or by all; NaN: not defined."""
         values, known = self.values[d, k], ~np.isnan(self.values[d, k])
+        if model is not None:
+            known &= self.model_of == model
         if not known.any():
             return np.full(len(TAIL), math.nan)
         random = np.random.default_rng(self.seed + d)
@@ -517,8 +521,17 @@ class Average:
             single = self.quantile(d, k, scatter) if math.isfinite(scatter) else np.full(len(TAIL), math.nan)
             predictions.append({"drop": self.first.problem.drops[d].name, "quantity": KINDS[k].key, "median": number(q[2]), "low95": number(q[0]), "high95": number(q[4]), "low90": number(q[1]),
                                 "high90": number(q[3]), "open": None if math.isnan(q[2]) else "above" if math.isinf(q[4]) else "no", "single_drop_low95": number(single[0]),
-                                "single_drop_high95": number(single[4]), "single_drop_low90": number(single[1]), "single_drop_high90": number(single[3]), "share_of_draws_without_value": number(self.missing(d, k))})
+                                "single_drop_high95": number(single[4]), "single_drop_low90": number(single[1]), "single_drop_high90": number(single[3]), "share_of_draws_without_value": number(self.missing(d, k)), "by_model": self._by_model(d, k)})
         return {"seed": self.seed, "criteria_reached": not self.warnings(), "warnings": self.warnings(), "weights_by": "leave-one-out predictive density", "models": models, "predictions": predictions}
+
+    def _by_model(self, d: int, k: int) -> list[dict[str, Any]]:
+        """Returns the interval of each model that has a weight."""
+        made = []
+        for m, label in enumerate(self.labels):
+            q = self.quantile(d, k, 0.0, m)
+            if not math.isnan(q[2]):
+                made.append({"model": label, **{key: nine_digits(value) if math.isfinite(value) else None for key, value in zip(("low90", "median", "high90"), q[1:4])}})
+        return made
 
     def page(self) -> dict[str, Any]:
         """Returns what report.html shows."""
