@@ -254,6 +254,12 @@ SOFTFALL_API softfall_status softfall_compression_read(const softfall_compressio
                                                        softfall_error *error);
 SOFTFALL_API void softfall_compression_free(softfall_compression_test *test);
 
+/* Fits a free curve, its rate dependence and its unloading to the tests that a file names
+ * (docs/identification.md), and writes material.cfg with its curves, fit.json, fit.csv and loading_curve.csv
+ * into the folder; `replace` 0: SOFTFALL_INPUT if one of them is there. */
+SOFTFALL_API softfall_status softfall_fit_compression(const char *path, const char *folder, int replace,
+                                                      softfall_error *error);
+
 /* ---- Input files of your own (libsoftfall-build) ---- */
 
 /* Reads a file in the syntax of a case (libconfig, with @include) and gives its settings as JSON: of each

@@ -271,6 +271,12 @@ def read_compression(path: str, rate: float, area: float, thickness: float, toe:
         _load().softfall_compression_free(made)
 
 
+def fit_compression(path: str, folder: str, replace: bool) -> None:
+    """softfall_fit_compression: the fit of a free curve, whose files it writes."""
+    with _one_at_a_time:
+        _call("softfall_fit_compression", os.fsencode(path), os.fsencode(folder), c.c_int(replace))
+
+
 class Form:
     """A form of the loading curve on a start material, or on a foam of a density alone. Values are arrays in SI units, in the order of `parameters`."""
 

@@ -2,14 +2,13 @@
 """The file of `softfall fit compression`: compression tests of a foam, a form of its curve or a hyperfoam, cycles (docs/identification.md)."""
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
-from .. import library, output as output_files, settings
+from .. import laboratory, library, settings
 from ..array import Array
 from ..errors import Error, InputError
 from ..library import CompressionTest, Form
@@ -27,8 +26,6 @@ SOFTER = 0.05  # more than specimens of one block scatter
 TURN, RETURN, UNLOADED, LONGEST_STEP, MOST_STRAIN = 0.05, 0.25, 0.1, 20.0, 0.98  # strain of a turn; shares of the largest strain; mean steps of a pause; strain
 HELD, RELAXED = 5e-4, 0.02  # strain that counts as constant, share of the stress that a relaxation takes
 LEAST_LATERAL = 6
-UNITS = {"time": {"time_s": 1.0, "time_ms": 1e-3}, "strain": {"strain": 1.0, "strain_percent": 0.01}, "stress": {"stress_kPa": 1e3, "stress_MPa": 1e6, "stress_Pa": 1.0},
-         "lateral_strain": {"lateral_strain": 1.0, "lateral_strain_percent": 0.01}}  # headings, in SI
 
 
 class Test(NamedTuple):
@@ -75,7 +72,7 @@ class Cycles(NamedTuple):
     held: Array  # bool: the stress relaxes at the reversal, which is not in the law
 
     @property
-    def count(self) -> int:
+    def whole(self) -> int:
         return len(self.turn) // 2
 
     @property
@@ -189,22 +186,13 @@ def _check_order(tests: list[Test]) -> None:
 
 # ---- cycles
 
-def _table(path: str, names: tuple[str, ...]) -> dict[str, Array]:
-    """Returns columns of a clean table (docs/formats.md) in SI units; InputError names the first that is missing."""
-    text = output_files.read(path).decode(errors="replace")
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    rows, made = list(csv.reader(lines)), dict[str, Array]()
-    for name in names:
-        place, factor = next(((k, UNITS[name][head.strip()]) for k, head in enumerate(rows[0] if rows else []) if head.strip() in UNITS[name]), (-1, 0.0))
-        if place < 0:
-            raise InputError(f"{path} has no column {next(iter(UNITS[name]))}")
-        try:
-            made[name] = factor * np.array([float(row[place]) for row in rows[1:]])
-        except (ValueError, IndexError):
-            raise InputError(f"{path}: a row has no number in the column {rows[0][place]}") from None
-        if not np.all(np.isfinite(made[name])) or not len(made[name]):
-            raise InputError(f"{path}: the column {rows[0][place]} must hold finite numbers")
-    return made
+def _columns(path: str, kind: str, names: tuple[str, ...]) -> list[Array]:
+    """Returns columns of any file of a laboratory; InputError names the first that is missing."""
+    frame = laboratory.read(path, kind=kind).frame
+    missing = next((name for name in names if name not in frame), None)
+    if missing:
+        raise InputError(f"{path} has no column {missing}, but {', '.join(map(str, frame.columns))}")
+    return [frame[name].to_numpy(float) for name in names]
 
 
 def _turns(path: str, strain: Array) -> list[int]:
@@ -240,7 +228,8 @@ def _end_of_hold(strain: Array, stress: Array, top: int) -> int:
 
 def read_cycles(path: str, fitted: int) -> Cycles:
     """Reads a record of cycles; InputError says what is wrong with it."""
-    time, strain, stress = _table(path, ("time", "strain", "stress")).values()
+    time, strain, stress = _columns(path, "compression", ("time_s", "strain", "stress_kPa"))
+    stress = 1e3 * stress
     wrong = np.flatnonzero(~(strain < MOST_STRAIN) | np.concatenate([[False], ~(np.diff(time) > 0)]))
     if len(wrong):
         i = int(wrong[0])
@@ -280,7 +269,7 @@ def _cycles(root: Setting) -> list[Cycles]:
 def _first_slope(test: Test, range_: float) -> float:
     """Returns the slope through the origin of the first points of loading."""
     strain, stress = test.data.strain[test.loading], test.data.stress[test.loading]
-    used = np.cumsum(strain > 0) - (strain > 0)  # points above 0 before each one
+    used: Array = np.cumsum(strain > 0) - (strain > 0)  # points above 0 before each one
     end = int(np.argmax((used >= SLOPE_POINTS) & (strain > range_))) or len(strain)
     return max(1e3, float(strain[:end] @ stress[:end]) / float(strain[:end] @ strain[:end]))
 
@@ -356,7 +345,8 @@ def _start(root: Setting, form: Form, rate: str, own: set[str], start: Array) ->
         if p is None or not (item.name in own or item.name in ("rate_factor", "ED", "BETA1")):
             item.refuse(f'start: "{item.name[:80]}" is neither E, a parameter of curve_form = "{form.curve}", nor rate_factor, ED or BETA1')
         _refuse_term(item, p.rate, rate)
-        value = read_quantity(group, item.name, p.quantity) if p.quantity else group.number(item.name, p.low, p.high)  # type: ignore[arg-type]
+        assert group
+        value = read_quantity(group, item.name, p.quantity) if p.quantity else group.number(item.name, p.low, p.high)
         if not p.low <= value <= p.high:
             item.refuse(f"{item.name} is {value:g}, outside of {p.low:g} to {p.high:g}")
         start[form.index[item.name]] = value
@@ -398,7 +388,7 @@ def _lateral(entry: Setting) -> tuple[Array, Array]:
     """Returns axial and lateral strain up to the largest strain, ascending."""
     path = entry.file("lateral")
     try:
-        axial, lateral = _table(str(path), ("strain", "lateral_strain")).values()
+        axial, lateral = _columns(str(path), "lateral", ("strain", "lateral_strain"))
     except Error as error:
         entry.member("lateral").refuse(str(error))
     if np.any(axial >= 1) or np.any(np.abs(lateral) >= 1):

@@ -48,6 +48,11 @@ class Page(NamedTuple):
     notes: list[str]
     energies: list[list[tuple[float, float]]] = []  # of each record and cycle: measured, by the law
 
+    def lines(self) -> list[str]:
+        """Returns the page in words, for the terminal and the comments of a material file."""
+        tables = [line for heading, heads, rows, _ in self.tables if heading != "Correlation" for line in [f"{heading}: {', '.join(heads)}", *("  " + "  ".join(row) for row in rows)]]
+        return [f"{self.text}.", *(f"WARNING: {doubt}." for doubt in self.doubts), *tables, *self.notes]
+
     @property
     def kind(self) -> str:
         return "bad" if not self.worst <= POOR else "fair" if not self.worst <= GOOD or self.doubts else "good"
@@ -67,48 +72,6 @@ def _tests(fit: FormFit) -> list[tuple[Test, str]]:
 
 
 # ---- a form
-
-def form_lines(fit: FormFit) -> list[str]:
-    """Returns the summary, which the material file has as comments."""
-    given, form = fit.given, fit.given.form
-    assert form
-    lines = [f"WARNING: {POOR_FORM}"] * (fit.worst > POOR)
-    lines += [f"Curve: {form.formula}.", f"Rate: {given.rate}.", f"rms of loading {_percent(fit.loading_rms)} of the largest stress, with {len(given.unknown)} parameters:"]
-    for k, name in enumerate(given.unknown):
-        p = form.parameters[form.index[name]]
-        doubt = f" (at its {_bound(fit, k)} bound)" if fit.at_bound[k] else f" ± {_percent(fit.error[k])}"
-        doubt += "" if fit.at_bound[k] or fit.is_determined(k) else " (these tests do not determine it)"
-        lines.append(f"  {name} {fit.at(name) / p.per_unit:.5g}{' ' * bool(p.unit)}{p.unit}{doubt}, {p.description}")
-    for one in (None if given.cycles else fit.one, fit.unloading):
-        if one:
-            told = ", ".join(f"{name} {value:.4g}{' (at its lower bound)' if name in one.at_bound and value < 0.5 else ' (at its upper bound)' if name in one.at_bound else ''}"
-                             for name, value in zip(UNLOADING, one.value))
-            lines.append(f"  unloading: {told}; rms {_percent(one.rms)} of the largest stress" +
-                         (f", rms of the factor {one.factor_rms:.2g}" if math.isfinite(one.factor_rms) else " (in the first of the cycles)"))
-    lines += _cycle_lines(fit) if given.cycles else []
-    for k, (test, use) in enumerate(_tests(fit)):
-        loading, unloading = fit.misfits(k)
-        below = " (below rate_reference, where the law has no effect of the rate)" if fit.is_below_reference(test) else ""
-        lines.append(f"  {use} {test.path} at {test.rate:.4g} 1/s{below}: rms of loading {_percent(loading)} of the largest stress" + (
-            f", of unloading {_percent(unloading)}; energy returned: {_percent(returned(test, test.data.stress), 3)} measured, {_percent(returned(test, fit.stress[k]), 3)} by the law"
-            if math.isfinite(unloading) else ""))
-    return lines
-
-
-def _cycle_lines(fit: FormFit) -> list[str]:
-    told = [f"{name} {fit.at(name):.3g} " + (f"± {error:.2g}" if math.isfinite(error) else "(at its bound, or no record tells it)") for name, error in zip(MEMORY, fit.memory_error)]
-    lines = [f"  memory, by the fitted cycles: {', '.join(told)}"]
-    if math.isfinite(fit.set[0]):
-        lines.append(f"  set, not written: reloads take up stress {fit.set[0]:.2g} ± {fit.set[1]:.1g} of the largest strain late, after {fit.set[2]:.3g} s without load")
-    for n, r in enumerate(fit.given.cycles):
-        parts = [(1, r.fitted, f"cycles 1 to {r.fitted} of {r.path}: "), (r.fitted + 1, r.count, f"; predicted, cycles {r.fitted + 1} to {r.count}: ")]
-        lines.append("  " + "".join(f"{words}largest rms of a cycle, of the largest stress: loading {_percent(max(fit.cycle_rms(n, 0)[a - 1:b]))}, unloading {_percent(max(fit.cycle_rms(n, 1)[a - 1:b]))}"
-                                    for a, b, words in parts if a <= b))
-        lines.append(f"  energy returned, measured (by the law): {', '.join(f'{100 * a:.1f} ({100 * b:.1f})' for a, b in fit.energies(n))} %")
-        if np.any(r.held):
-            lines.append(f"  {r.path}: the stress falls by up to {_percent(r.relaxation)} at constant strain at the reversals: relaxation, which is not in the law; {np.sum(r.held)} points are left out")
-    return [*lines, "  Not in the law: permanent set within a test, and relaxation at the largest strain."]
-
 
 def form_doubts(fit: FormFit) -> list[str]:
     """Returns warnings."""
@@ -135,7 +98,7 @@ def form_summary(fit: FormFit) -> dict[str, Any]:
     if given.cycles:
         made["memory"] = {key: value for name, error in zip(MEMORY, fit.memory_error) for key, value in ((name, fit.at(name)), (f"{name}_standard_error", number(error)))}
         made["memory"] |= dict(zip(("set", "set_standard_error", "set_time_s"), map(number, fit.set)))
-        made["memory"]["records"] = [{"file": r.path, "cycles": r.count, "fitted": r.fitted, "pauses": int(np.sum(r.pause[:r.turn[2 * r.fitted] + 1] > 0)), "relaxation": r.relaxation,
+        made["memory"]["records"] = [{"file": r.path, "cycles": r.whole, "fitted": r.fitted, "pauses": int(np.sum(r.pause[:r.turn[2 * r.fitted] + 1] > 0)), "relaxation": r.relaxation,
                                       "loading_rms": fit.cycle_rms(n, 0), "unloading_rms": fit.cycle_rms(n, 1), "returned_energy_measured": [a for a, _ in fit.energies(n)],
                                       "returned_energy_fitted": [b for _, b in fit.energies(n)]} for n, r in enumerate(given.cycles)]
     made |= {"tests": [], "predicted": []}
@@ -171,28 +134,34 @@ def form_page(fit: FormFit) -> Page:
     rows = []
     for k, name in enumerate(given.unknown):
         p, value = form.parameters[form.index[name]], fit.at(name) / form.parameters[form.index[name]].per_unit
-        low, high = (value * math.exp(sign * 1.96 * fit.error[k]) if fit.is_determined(k) else math.nan for sign in (-1, 1))
-        rows.append([name + (f" ({p.unit})" if p.unit else ""), f"{value:.5g}", f"at its {_bound(fit, k)} bound" if fit.at_bound[k] else f"± {_percent(fit.error[k])}",
-                     f"{low:.4g} to {high:.4g}" if math.isfinite(low) else "not determined", p.description])
-    if fit.unloading:
-        rows += [[name, f"{value:.4g}", "at its bound" if name in fit.unloading.at_bound else "–", "–", "of unloading"] for name, value in zip(UNLOADING, fit.unloading.value)]
+        doubt = f"at its {_bound(fit, k)} bound" if fit.at_bound[k] else f"± {_percent(fit.error[k])}"
+        interval = " to ".join(f"{value * math.exp(sign * 1.96 * fit.error[k]):.4g}" for sign in (-1, 1)) if fit.is_determined(k) else "these tests do not determine it"
+        rows.append([name + (f" ({p.unit})" if p.unit else ""), f"{value:.5g}", doubt, interval, p.description])
+    for one, words in ((None if given.cycles else fit.one, "of unloading, ALPHA = 1"), (fit.unloading, "of unloading")):
+        rows += [[name, f"{value:.4g}", f"at its {'lower' if value < 0.5 else 'upper'} bound" if name in one.at_bound else "–", "–", words] for name, value in zip(UNLOADING, one.value)] if one else []
     if given.cycles:
-        rows += [[name, f"{fit.at(name):.3g}", f"± {error:.2g}" if math.isfinite(error) else "not told", "–", "memory"] for name, error in zip(MEMORY, fit.memory_error)]
-    tests = [[test.path, use, f"{test.rate:.4g}", *map(_percent, fit.misfits(k)), _percent(returned(test, test.data.stress), 3), _percent(returned(test, fit.stress[k]), 3)] for k, (test, use) in enumerate(_tests(fit))]
+        rows += [[name, f"{fit.at(name):.3g}", f"± {error:.2g}" if math.isfinite(error) else "at its bound, or no record tells it", "–", "of the memory"] for name, error in zip(MEMORY, fit.memory_error)]
+        rows.append(["set", f"{fit.set[0]:.2g}", f"± {fit.set[1]:.1g}", "–", f"not written: of the largest strain, by which reloads take up stress late, after {fit.set[2]:.3g} s without load"])
+    tests = [[test.path, use + (", below rate_reference" if fit.is_below_reference(test) else ""), f"{test.rate:.4g}", *map(_percent, fit.misfits(k)), _percent(returned(test, test.data.stress), 3),
+              _percent(returned(test, fit.stress[k]), 3)] for k, (test, use) in enumerate(_tests(fit))]
     tables = [("Parameters", ["parameter", "value", "standard error", "95 %, linearised", "meaning"], rows, NOTE),
               ("Correlation", ["", *given.unknown], [[name, *(f"{v:+.2f}" for v in row)] for name, row in zip(given.unknown, fit.correlation)], ""),
               ("Tests", ["test", "use", "rate (1/s)", "loading", "unloading", "energy returned, measured", "by the law"], tests, "Root mean square of the deviations over the largest stress.")]
-    for n, r in enumerate(given.cycles):
-        tables.append((f"Cycles of {Path(r.path).name}", ["cycle", "use", "loading", "unloading", "energy returned, measured", "by the law"],
-                       [[str(c + 1), "fitted" if c < r.fitted else "predicted", _percent(a), _percent(b), _percent(e[0], 3), _percent(e[1], 3)]
-                        for c, (a, b, e) in enumerate(zip(fit.cycle_rms(n, 0), fit.cycle_rms(n, 1), fit.energies(n)))], ""))
+    notes = [f"Curve: {form.formula}.", f"Beyond the strain {given.informed:.4g} and outside these rates it is extrapolation.", *offers(given.tests if not given.cycles else [])]
     series = [Series(f"{test.rate:.4g} 1/s", test.data.strain, 1e-3 * test.data.stress, 1e-3 * fit.stress[k], use == "predicted") for k, (test, use) in enumerate(_tests(fit))]
-    series += [Series(f"{Path(r.path).name}, cycle {c + 1}", r.strain[a:b + 1], 1e-3 * r.stress[a:b + 1], 1e-3 * law[a:b + 1], c >= r.fitted)
-               for r, law in zip(given.cycles, fit.cycles) for c, (a, b) in enumerate(zip(r.turn[::2], r.turn[2::2])) if c]
-    notes = [f"Curve: {form.formula}.", f"Beyond the strain {given.informed:.4g} and outside these rates it is extrapolation.", *offers(given.tests if not given.cycles else []),
-             *(line.strip() for line in (_cycle_lines(fit)[-1:] if given.cycles else []))]
-    worst = max(fit.worst, *(max(fit.cycle_rms(n, b)[:r.fitted]) for n, r in enumerate(given.cycles) for b in (0, 1))) if given.cycles else fit.worst
-    return Page(given.name, worst, form_doubts(fit), f"{form.curve}, rate {given.rate}", series, "nominal stress (kPa)", tables, notes, [fit.energies(n) for n in range(len(given.cycles))])
+    worst = [fit.worst]
+    for n, (r, law) in enumerate(zip(given.cycles, fit.cycles)):
+        misfits, use = [fit.cycle_rms(n, branch) for branch in (0, 1)], ["fitted" if c < r.fitted else "predicted" for c in range(r.whole)]
+        worst += [max(one[:r.fitted]) for one in misfits]
+        tables.append((f"Cycles of {Path(r.path).name}", ["cycle", "use", "loading", "unloading", "energy returned, measured", "by the law"],
+                       [[str(c + 1), use[c], _percent(a), _percent(b), *(_percent(e, 3) for e in energy)] for c, (a, b, energy) in enumerate(zip(*misfits, fit.energies(n)))], ""))
+        series += [Series(f"{Path(r.path).name}, cycle {c + 1}", r.strain[a:b + 1], 1e-3 * r.stress[a:b + 1], 1e-3 * law[a:b + 1], c >= r.fitted)
+                   for c, (a, b) in enumerate(zip(r.turn[::2], r.turn[2::2])) if c]
+        notes += [f"{r.path}: the stress falls by up to {_percent(r.relaxation)} at constant strain at the reversals: relaxation; {np.sum(r.held)} points are left out."] if np.any(r.held) else []
+    notes += ["Not in the law: permanent set within a test, and relaxation at the largest strain."] if given.cycles else []
+    doubts = [POOR_FORM] * (fit.worst > POOR) + form_doubts(fit)
+    return Page(given.name, max(worst), doubts, f"{form.curve}, rate {given.rate}, rms of loading {_percent(fit.loading_rms)} with {len(given.unknown)} parameters", series, "nominal stress (kPa)", tables,
+                notes, [fit.energies(n) for n in range(len(given.cycles))])
 
 
 def offers(tests: list[Test]) -> list[str]:
@@ -206,19 +175,6 @@ def _term(fit: HyperfoamFit, k: int, j: int) -> str:
     low = fit.terms[k, j] < (0.2 if j == 2 else 1.0)
     error = fit.error[k, j]
     return f"at its {'lower' if low else 'upper'} bound" if fit.at_bound[k, j] else ("± " + (_percent(error) if j == 0 else f"{error:.2g}")) if math.isfinite(error) else "given"
-
-
-def hyperfoam_lines(fit: HyperfoamFit) -> list[str]:
-    lines = hyperfoam_doubts(fit)
-    for k, (mu, alpha, nu) in enumerate(fit.terms):
-        told = [(f"({text})" if "bound" in text or text == "given" else text) for text in (_term(fit, k, j) for j in range(3))]
-        lines.append(f"  term {k + 1}: mu {1e-3 * mu:.5g} kPa {told[0]}, alpha {alpha:.4g} {told[1]}, nu {nu:.4g} {told[2]}")
-    lines.append(f"  -ln(lateral stretch)/ln(axial stretch): {fit.poisson[0]:.3g} at 1 % strain, {fit.poisson[1]:.3g} at {100 * fit.given.informed:.3g} %")
-    lines.append(f"  rms while loading: stress {_percent(fit.stress_rms)} of the largest" + (f", lateral strain {_percent(fit.lateral_rms)} of the largest" if math.isfinite(fit.lateral_rms) else ""))
-    if math.isfinite(fit.unloading_rms):
-        lines.append("  unloading: " + ", ".join(f"{name} {value:.4g}{' (at its bound)' if name in fit.unloading_at_bound else ''}" for name, value in zip(UNLOADING, fit.unloading)) +
-                     f"; rms {_percent(fit.unloading_rms)} of the largest stress")
-    return lines
 
 
 def hyperfoam_doubts(fit: HyperfoamFit) -> list[str]:
@@ -253,11 +209,11 @@ def hyperfoam_page(fit: HyperfoamFit) -> Page:
         at, measured = fit.given.lateral
         scale = 1e-3 * size / max(0.01, float(np.max(np.abs(measured))))
         series.append(Series(f"lateral strain × {scale:.4g} kPa", at, scale * measured, scale * fit.lateral))
-    bounds = [f"{name} stands {row}" for name, _, row in rows if "bound" in row]
+    bounds = [f"{name} stands {row}" for name, _, row in rows[:-3] if "bound" in row]
     return Page(fit.given.name, max(fit.misfits.values()), [*hyperfoam_doubts(fit), *bounds], f"hyperfoam of {len(fit.terms)} terms", series, "nominal stress (kPa), free sides",
                 [("Parameters", ["parameter", "value", "standard error"], rows, NOTE), ("Correlation", ["", *names], [[n, *(f"{v:+.2f}" for v in row)] for n, row in zip(names, fit.correlation)], ""),
                  ("What the fit leaves", ["quantity", "rms over the largest value"], [[name, _percent(value)] for name, value in fit.misfits.items()], "")],
-                [hyperfoam_lines(fit)[-3 if math.isfinite(fit.unloading_rms) else -2].strip(), f"Beyond the strain {fit.given.informed:.4g} and at other rates it is extrapolation.", *offers(fit.given.tests)])
+                [f"-ln(lateral stretch)/ln(axial stretch): {fit.poisson[0]:.3g} at 1 % strain, {fit.poisson[1]:.3g} at {100 * fit.given.informed:.3g} %.", f"Beyond the strain {fit.given.informed:.4g} and at other rates it is extrapolation.", *offers(fit.given.tests)])
 
 
 # ---- the free curve, which softfall-fit has fitted
@@ -272,7 +228,8 @@ def free_page(folder: Path) -> Page:
     for k, test in enumerate(found["tests"], 1):
         own = [row for row in rows if int(row["test"]) == k]
         label = f"{test['temperature_K'] - 273.15:.3g} °C" if "temperature_K" in test else f"{test['rate_1_s']:.3g} 1/s"
-        series.append(Series(label, *(np.array([float(row[name]) for row in own]) for name in ("strain", "measured_kPa", "fit_kPa"))))
+        strain, measured, law = (np.array([float(row[name]) for row in own]) for name in ("strain", "measured_kPa", "fit_kPa"))
+        series.append(Series(label, strain, measured, law))
         tests.append([Path(test["file"]).name, label, *(f"{test[f'{side}_rms_over_sigma']:.3g} ({test[f'{side}_rms_percent']:.2g} %)" if test.get(f"{side}_rms_over_sigma") is not None else "–"
                                                         for side in ("loading", "unloading")), test["understood"]])
     scale = {"E_Pa": ("E (kPa)", 1e-3), "ED_Pa": ("ED (kPa)", 1e-3), "BETA1_1_s": ("BETA1 (1/s)", 1.0), "log_rate_c": ("c of the logarithm of the rate", 1.0)}
@@ -289,9 +246,7 @@ def free_page(folder: Path) -> Page:
               if (found.get(f"misfit_{side}") or 0.0) > 2]
     tables = [("Parameters", ["parameter", "value", "standard error", f"{100 * found['confidence']:g} % interval", "note"], parameters, NOTE),
               ("Tests", ["test", "rate or temperature", "loading", "unloading", "read as"], tests, "Root mean square of the deviations over the scatter (1: nothing but scatter) and of the stress."),
-              *([("Choice of the law", ["term", "form", "parameters", "chi2", "BIC above the lowest"], candidates, "10 above the lowest: the data are clearly against it.")] if candidates else []),
-              *([("The simulated test", list(found["simulation"][0]), [[f"{value:.3g}" for value in one.values()] for one in found["simulation"]],
-                  "A cube of the material between platens in softfall-solve against the material point; differences in percent of the stress.")] if found.get("simulation") else [])]
+              *([("Choice of the law", ["term", "form", "parameters", "chi2", "BIC above the lowest"], candidates, "10 above the lowest: the data are clearly against it.")] if candidates else [])]
     end, fastest = max(test["largest_strain"] for test in found["tests"]), max(test["rate_1_s"] for test in found["tests"])
     return Page(found["name"], max(sides), doubts, f"free curve, rate model {found['rate_model']}, densification {found['densification']} from the strain {found['densification_start']:.3g}; "
                 f"chi2/(n − p) = {found['misfit']:.3g}", series, "nominal stress (kPa)", tables,

@@ -237,7 +237,7 @@ def _fit_unloading(fit: FormFit, is_one: bool) -> Unloading:
 
     def values(x: Array) -> Array:
         made = UNLOADING_LOW + (UNLOADING_HIGH - UNLOADING_LOW) * logistic([*x, 0.0][:3])
-        return np.array([*made[:2], 1.0]) if is_one else made
+        return np.array([*made[:2], 1.0]) if is_one else np.asarray(made)
 
     def deviations(unloading: Array) -> list[Array]:
         foam = _foam(given, fit.value, unloading)
@@ -303,7 +303,7 @@ def _fit_cycles(fit: FormFit) -> None:
             value, own = take(x)
             foam = _foam(given, value, own[:3], own[3:])
             off = np.concatenate([((foam.cycles(r.time[:end], r.strain[:end], r.pause[:end]) - r.stress[:end]) / r.largest)[~r.held[:end]] for r, end in records])
-            return np.clip(np.nan_to_num(off, nan=FAR_CYCLES, posinf=FAR_CYCLES, neginf=FAR_CYCLES), -FAR_CYCLES, FAR_CYCLES)
+            return np.asarray(np.clip(np.nan_to_num(off, nan=FAR_CYCLES, posinf=FAR_CYCLES, neginf=FAR_CYCLES), -FAR_CYCLES, FAR_CYCLES))
         except NumericError:
             return np.full(sum(int(np.sum(~r.held[:end])) for r, end in records), FAR_CYCLES)
 
@@ -340,7 +340,7 @@ def _set(fit: FormFit) -> tuple[float, float, float]:
     """Returns by how much later than the law, which has no set in a test, reloads take up stress, over the largest strain before; its standard error; the mean time without load."""
     parts, times = list[float](), list[float]()
     for r, law in zip(fit.given.cycles, fit.cycles):
-        for c in range(1, r.count):
+        for c in range(1, r.whole):
             begin, end, top = r.turn[2 * c], r.turn[2 * c + 1], r.turn[2 * c - 1]
             left = begin
             while left > top and r.stress[left] < 0.01 * r.largest:

@@ -15,7 +15,7 @@ from ..array import Array
 from ..errors import NumericError
 from ..library import Hyperfoam
 from .compression import Given
-from .curve_fit import POOR, UNLOADING, UNLOADING_HIGH, UNLOADING_LOW, UNLOADING_STARTS, is_at_end, logistic, number, rms, search
+from .curve_fit import POOR, UNLOADING, UNLOADING_HIGH, UNLOADING_LOW, UNLOADING_STARTS, is_at_end, logistic, rms, search
 
 STARTS = (40.0, 14.0, 4.0, -1.0, -3.0, -8.0)  # of alpha: from yield to densification
 MOST_NU, MOST_ALPHA, LEAST_ALPHA = 0.45, 49.0, 0.02
@@ -73,7 +73,7 @@ class _Problem:
 
     def residual(self, x: Array) -> Array:
         foam = self.foam(self.terms(x))
-        parts = [self.weight * self.test.scaled(foam.loading(self.strain)[0])]
+        parts: list[Array] = [self.weight * self.test.scaled(foam.loading(self.strain)[0])]
         if self.given.lateral:
             at, measured = self.given.lateral
             parts.append((foam.loading(at)[1] - measured) / (self.size * math.sqrt(len(at))))
@@ -121,7 +121,7 @@ def run(given: Given) -> HyperfoamFit:
     unloading, at_bound, left = np.ones(3), [], math.nan
     if len(test.data.strain) - test.data.loading > 3:
         def values(y: Array) -> Array:
-            return UNLOADING_LOW + (UNLOADING_HIGH - UNLOADING_LOW) * logistic(y)
+            return np.asarray(UNLOADING_LOW + (UNLOADING_HIGH - UNLOADING_LOW) * logistic(y))
 
         def deviation(y: Array) -> Array:
             return test.scaled(p.foam(terms, values(y)).compress(*test.path_of(), free_sides=True)[1:])[test.unloading]
