@@ -14,7 +14,7 @@ export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 out=out/eva35
 mkdir -p out
 SECONDS=0
-"${SF_BIN_DIR:-build/bin}"/softfall-fit drop examples/fit/eva35_forms.cfg --jobs 3 -o "$out" --force || [ $? -eq 5 ] # a model that has not converged is marked in its report
+"${SF_BIN_DIR:-build/bin}"/softfall fit examples/fit/eva35_forms.cfg -o "$out" --force || [ $? -eq 5 ] # a model that has not converged is marked in its report
 echo "identified in $((SECONDS / 60)) min $((SECONDS % 60)) s"
 cp "$out/eva35.cfg" "$out/eva35.csv" examples/materials/
 tools/thin_posterior.py "$out/posterior" 100 examples/materials/eva35_posterior
