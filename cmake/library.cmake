@@ -21,7 +21,7 @@ softfall_shared(softfall_api softfall softfall
     SOURCES src/api/api_drop.c src/api/api_record.c
     PRIVATE softfall_drop)
 softfall_shared(softfall_api_build softfall-build build
-    SOURCES src/api/api_case.c src/api/api_form.c src/api/api_material.c src/api/api_settings.c src/api/api_variant.c
+    SOURCES src/api/api_case.c src/api/api_compression.c src/api/api_form.c src/api/api_material.c src/api/api_settings.c src/api/api_variant.c
     PRIVATE softfall_accuracy softfall_report softfall_study
     PUBLIC softfall_api)
 

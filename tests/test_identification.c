@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* softfall-fit compression: its spline, its model against the solver's law and against its
- * own derivatives, and a fit from the files of tests to a material that softfall-pre reads. */
+/* softfall-fit compression: its spline, its model against the solver's law, and a fit from the files of tests to
+ * a material that softfall-pre reads. */
 #include "case/read.h"
 #include "material/low_density_foam.h"
-#include "study/fit/compression/table_fit.h"
+#include "study/fit/compression/compression_fit.h"
 #include "material/laws.h"
 
 #include <math.h>
@@ -98,45 +98,6 @@ static void read_tests(sf_compression_config *config) {
     assert_relative(config->test[1].rate, 10.0 / 60, 1e-12);
 }
 
-static void derivatives_are_those_of_the_prediction(void **state) {
-    (void)state;
-    sf_compression_config config;
-    sf_compression_data data;
-    sf_error err = SF_ERROR_INIT;
-    read_tests(&config);
-    assert_int_equal(sf_compression_data_init(&config, &data, &err), SF_OK);
-    for (int rate = 0; rate < SF_RATE_MODELS; rate++)
-        for (int rule = 0; rule < SF_RULES; rule++) {
-            sf_compression_model model;
-            const sf_compression_form form = {(sf_rate_model)rate, (sf_rule)rule, rule == SF_H2};
-            assert_int_equal(sf_compression_model_init(&data, form, &model, &err), SF_OK);
-            size_t n = (size_t)data.count, p = (size_t)model.parameter_count;
-            gsl_vector *x = gsl_vector_alloc(p);
-            gsl_matrix *jacobian = gsl_matrix_alloc(n, p);
-            double *up = calloc(n, sizeof *up), *down = calloc(n, sizeof *down);
-            sf_compression_guess(&model, 0.5, x);
-            sf_compression_predict(&model, x, up, jacobian);
-            for (size_t j = 0; j < p; j++) {
-                const double h = 1e-5, at = gsl_vector_get(x, j);
-                gsl_vector_set(x, j, at + h);
-                sf_compression_predict(&model, x, up, NULL);
-                gsl_vector_set(x, j, at - h);
-                sf_compression_predict(&model, x, down, NULL);
-                gsl_vector_set(x, j, at);
-                for (size_t i = 0; i < n; i++)
-                    assert_close(gsl_matrix_get(jacobian, i, j), (up[i] - down[i]) / (2 * h),
-                                 1e-5 * fabs(up[i]) + 1e-2);
-            }
-            free(up);
-            free(down);
-            gsl_vector_free(x);
-            gsl_matrix_free(jacobian);
-            sf_compression_model_free(&model);
-        }
-    sf_compression_data_free(&data);
-    sf_compression_config_free(&config);
-}
-
 /* Stress of a branch of 1 Pa at a constant rate of the stretch, in closed form: the convolution of E' =
  * stretch stretch' with the decay. */
 static double maxwell_leg(double decay_rate, double velocity, double held, double from, double time) {
@@ -217,9 +178,9 @@ static void check_curve(sf_compression_fit *fit) {
             last = fit->table_stress[r][k];
         }
     const double h = 1e-6;
-    double at = sf_compression_curve(&fit->model, fit->parameters, 0, start, NULL);
-    double before = sf_compression_curve(&fit->model, fit->parameters, 0, start - h, NULL);
-    double after = sf_compression_curve(&fit->model, fit->parameters, 0, start + h, NULL);
+    double at = sf_compression_curve(&fit->model, fit->parameters, 0, start);
+    double before = sf_compression_curve(&fit->model, fit->parameters, 0, start - h);
+    double after = sf_compression_curve(&fit->model, fit->parameters, 0, start + h);
     assert_relative((after - at) / h, (at - before) / h, 1e-3);
 }
 
@@ -383,7 +344,6 @@ static void written_material_is_the_card_of_the_fit(void **state) {
     assert_int_equal(sf_compression_fit_run(&config, &fit, &err), SF_OK);
     assert_int_equal(sf_compression_card(&fit, &card, &err), SF_OK);
     program_result r = program_succeed(&place, "fit", "compression fit.cfg -o out");
-    program_assert_page(&place, "out/report.html", "softfall-fit compression fit.cfg -o out");
     assert_non_null(strstr(r.out, "SHAPE"));
     program_write_text(&place, "pad.geo", "// not meshed\n");
     snprintf(material, sizeof material, "material=@%s", program_path(&place, "out/material.cfg"));
@@ -423,36 +383,10 @@ static void results_are_replaced_only_by_force(void **state) {
     assert_int_not_equal(access(program_path(&place, "other"), F_OK), 0);
 }
 
-/* The solver presses a cube of the fitted foam, 1200 times faster than the test. */
-static void simulated_cube_agrees_with_the_material_point(void **state) {
-    (void)state;
-    double loading, unloading;
-    const sheet s = sheet_good(1);
-    char case_path[512];
-    snprintf(case_path, sizeof case_path, "%s/examples/compression/case.cfg", getenv("SF_SOURCE_DIR"));
-    sheet_write(&place, "slow.csv", &s);
-    program_write_text(&place, "fit.cfg", "density = \"35 kg/m3\";\n" SHEET_TEST_LIST);
-    program_result r = program_run(&place, "fit", "compression fit.cfg -o cube --simulate '%s'", case_path);
-    assert_int_equal(r.code, SF_ERR_INPUT); /* no specimen */
-    program_write_text(
-        &place, "fit.cfg",
-        "density = \"35 kg/m3\";\nspecimen = { side = \"20 mm\"; thickness = \"20 mm\"; };\n" SHEET_TEST_LIST);
-    r = program_succeed(&place, "fit", "compression fit.cfg -o cube --force --simulate '%s' --friction 0.2",
-                        case_path);
-    const char *line = strstr(r.out, "largest difference");
-    assert_non_null(line);
-    assert_int_equal(
-        sscanf(line, "largest difference %lf %% loading, %lf %% unloading", &loading, &unloading), 2);
-    assert_in_range((int)(1000 * loading), 1, 500);
-    assert_in_range((int)(1000 * unloading), 1, 3000);
-    assert_int_equal(access(program_path(&place, "cube/simulation.csv"), R_OK), 0);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spline_rows_are_value_slope_and_integral),
         cmocka_unit_test(knots_ascend_and_leave_two_points_between),
-        cmocka_unit_test(derivatives_are_those_of_the_prediction),
         cmocka_unit_test(maxwell_stress_is_that_of_the_solver),
         cmocka_unit_test(every_form_gives_a_card_that_the_solver_follows),
         cmocka_unit_test(exact_data_give_their_parameters_back),
@@ -462,7 +396,6 @@ int main(void) {
         cmocka_unit_test(an_exponent_below_one_is_said),
         cmocka_unit_test(written_material_is_the_card_of_the_fit),
         cmocka_unit_test(results_are_replaced_only_by_force),
-        cmocka_unit_test(simulated_cube_agrees_with_the_material_point),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -16,7 +16,7 @@ case ${1:-} in
 '' | --docs | --materials) ;;
 *) echo 'usage: tools/foams_table.sh [--docs | --materials]' >&2 && exit 2 ;;
 esac
-PYTHONPATH=tools PYTHONDONTWRITEBYTECODE=1 exec python3 - "${SF_BIN_DIR:-build/bin}/softfall-fit" "${1:-}" <<'PYTHON'
+PYTHONPATH=tools PYTHONDONTWRITEBYTECODE=1 exec python3 - "${SF_BIN_DIR:-build/bin}/softfall" "${1:-}" <<'PYTHON'
 import csv
 import json
 import math
@@ -69,7 +69,7 @@ def fit(tests, form, keys="", predict=()):
         stream.write('name = "foam"; density = "105 kg/m3"; %s %s\ntests = ( %s );\n' % (curve, keys, entries(tests)))
         if predict:
             stream.write("predict = ( %s );\n" % entries(predict))
-    done = subprocess.run([PROGRAM, "compression", folder + ".cfg", "-o", folder, "--force"], capture_output=True, text=True)
+    done = subprocess.run([PROGRAM, "fit", "compression", folder + ".cfg", "-o", folder, "--force"], capture_output=True, text=True)
     if done.returncode != 0:
         return None, done.stderr.strip().split("\n")[-1]
     with open(folder + "/fit.json") as stream:
@@ -218,13 +218,13 @@ def run(*command):
 def fitted(name, kind):
     """fit.json of examples/foams/NAME.cfg."""
     folder = "%s/%s" % (OUT, name)
-    run(PROGRAM, kind, "examples/foams/%s.cfg" % name, "-o", folder, "--force", *(["--jobs", "2"] if kind == "drop" else []))
+    run(PROGRAM, "fit", *kind, "examples/foams/%s.cfg" % name, "-o", folder, "--force")
     with open(folder + "/fit.json") as stream:
         return json.load(stream)
 
 
 def compression_row(name, foam, held_out):
-    found = fitted(name, "compression")
+    found = fitted(name, ["compression"])
     test = found["predicted"][0]
     return [foam, "`%s.cfg`" % name, found["curve_form"], "loading %s %%, unloading %s %% of the largest stress" % (
         percent(found["loading_rms"]), percent(found["unloading"]["rms"])), held_out + ": loading %s %%, unloading %s %%" % (
@@ -232,7 +232,7 @@ def compression_row(name, foam, held_out):
 
 
 def zorbium_row():
-    rms = fitted("zorbium", "compression")["loading_rms"]
+    rms = fitted("zorbium", ["compression"])["loading_rms"]
     others, sentence = fit([f for f in ZORBIUM if f[1] != 0.02], "avalle", 'rate_model = "factor";', [ZORBIUM[1]])
     if not others:
         sys.exit("foams_table: Zorbium: %s" % sentence)
@@ -253,7 +253,7 @@ def flat_drop(stress):
 
 
 def pe_row():
-    worst = max(abs(p["peak_g"] / p["peak_measured_g"] - 1) for p in fitted("pe", "drop")["cushions"])
+    worst = max(abs(p["peak_g"] / p["peak_measured_g"] - 1) for p in fitted("pe", [])["cushions"])
     a, b, ratio = 68.04, 0.015664, 0.9 / 0.1
     errors = [flat_drop(s) / (a * math.exp(b * s * ratio) / s) - 1 for s in (3, 6, 9, 12)]
     return ["Polyethylene, by its cushion curves", "`pe.cfg`", "rusch", "peaks within %.1f %%" % (100 * worst),
@@ -261,7 +261,7 @@ def pe_row():
 
 
 def tile_row():
-    found = fitted("tile", "drop")
+    found = fitted("tile", [])
     hic = {d["name"]: d["hic"] for d in found["drops"]}
     interval = next(p for p in found["inference"]["predictions"] if p["quantity"] == "HIC")
     return ["Rubber tile with a cored base, by its critical heights", "`tile.cfg`", "rusch",

@@ -3,7 +3,7 @@
  * scatter, go through the identification of softfall-fit compression. It must choose the law that made them,
  * and its intervals must hold the truth as often as they say. */
 #include "material/low_density_foam.h"
-#include "study/fit/compression/table_fit.h"
+#include "study/fit/compression/compression_fit.h"
 #include "material/laws.h"
 #include "study.h"
 
@@ -176,10 +176,9 @@ static void count(coverage *c, double value, double error, double low, double hi
 
 /* Stress of the loading curve between the points of the table, where the interval is that of the nearest. */
 static void count_curve(sf_compression_fit *fit, coverage *c) {
-    double gradient[SF_SPLINE_COEFFICIENTS + SF_NUMBERS];
     for (int k = 0; k < PLACES; k++) {
-        double stress = sf_compression_curve(&fit->model, fit->parameters, 0, PLACE[k], gradient), error;
-        error = sf_compression_error(fit, gradient);
+        double stress = sf_compression_curve(&fit->model, fit->parameters, 0, PLACE[k]),
+               error = sf_compression_error(fit, sf_compression_curve, 0, PLACE[k]);
         count(&c[k], stress, error, stress - fit->quantile * error, stress + fit->quantile * error);
     }
 }

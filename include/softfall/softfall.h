@@ -160,6 +160,29 @@ SOFTFALL_API softfall_status softfall_compress(const softfall_material *material
                                                const double *time, const double *strain, int64_t count,
                                                double *stress, softfall_error *error);
 
+/* Presses a point along a record of cycles (softfall_compress, sides held), whose first strain may be above 0.
+ * `pause` [count]: time (s) without load before each point, 0: none. Memory recovers in a pause. */
+SOFTFALL_API softfall_status softfall_compress_cycles(const softfall_material *material, const double *time,
+                                                      const double *strain, const double *pause,
+                                                      int64_t count, double *stress, softfall_error *error);
+
+/* Parameters of a hyperfoam (docs/case.md). */
+enum { SOFTFALL_TERMS = 6 };
+typedef struct softfall_hyperfoam {
+    double density, damp; /* kg/m3, - */
+    double hu, shape, unloading_alpha;
+    double informed; /* largest strain of the data */
+    int terms;
+    double mu[SOFTFALL_TERMS], alpha[SOFTFALL_TERMS], nu[SOFTFALL_TERMS]; /* Pa, -, - */
+} softfall_hyperfoam;
+SOFTFALL_API softfall_status softfall_hyperfoam_material(const softfall_hyperfoam *values,
+                                                         softfall_material **out, softfall_error *error);
+/* Loading of a hyperfoam with free sides at ascending or descending strains: nominal stress (Pa), lateral
+ * strain (positive outwards) and W (J/m3), each [count]; NaN where the sides find no rest. */
+SOFTFALL_API softfall_status softfall_hyperfoam_loading(const softfall_material *material, const double *strain,
+                                                        int64_t count, double *stress, double *lateral,
+                                                        double *energy, softfall_error *error);
+
 /* Sets the peak deceleration (g, F/m, CFC 1000) of a flat mass of `static_stress` (Pa, weight over area) on a
  * block of this foam, `thickness` and `drop_height` in m (ASTM D1596). SOFTFALL_NUMERIC: it collapses. */
 SOFTFALL_API softfall_status softfall_cushion(const softfall_material *material, double static_stress,
@@ -176,16 +199,26 @@ typedef struct softfall_form softfall_form;
  * walls, 0: not known. */
 SOFTFALL_API softfall_status softfall_form_read(const char *material, const char *curve, double solid_density,
                                                 softfall_form **out, softfall_error *error);
+/* A form without a start material: of a foam of this density without hysteresis and terms of the rate. */
+SOFTFALL_API softfall_status softfall_form_make(double density, const char *curve, double solid_density,
+                                                softfall_form **out, softfall_error *error);
 SOFTFALL_API void softfall_form_free(softfall_form *form);
 /* JSON: "curve", "formula", "density" (kg/m3) and "curves" (of the start material), and of each of the
  * "parameters" "name", "unit" of "per_unit" SI units, SI unit ("quantity", "" of a number), bounds "low" and
- * "high", "prior_sd" of its logarithm, "used" (by this form), "usual" (unknown in a usual fit), "rate" (the
- * term of the rate that it belongs to) and "description"; owned by the form. */
+ * "high", "prior_sd" of its logarithm, "used" (by this form), "usual" (unknown in a usual fit),
+ * "of_curve" (the form's own), "rate" (the term of the rate that it belongs to) and "description"; owned by the
+ * form. */
 SOFTFALL_API const char *softfall_form_parameters(const softfall_form *form);
 /* Fills `value` with medians of the priors and values of the start material, but for those that are `given`
  * (NaN: not given). `unknown` 1: a term that the start material does not have gets a median. */
 SOFTFALL_API void softfall_form_start(const softfall_form *form, const double *given, const int *unknown,
                                       double *value);
+/* Strain at which the curve of these values has its pole; it is infinite there. */
+SOFTFALL_API double softfall_form_pole(const softfall_form *form, const double *value);
+/* Fills `stress` [count] (Pa) of loading from rest at a constant rate (1/s; 0: the curve alone), with rate
+ * factor and Maxwell branch, whether the curve rises or not. Strains ascend, from 0 on. */
+SOFTFALL_API void softfall_form_loading(const softfall_form *form, const double *value, double rate,
+                                        const double *strain, int64_t count, double *stress);
 /* Makes the foam of these values; `informed`: largest strain about which the data inform, 0: that of the
  * curve's end. SOFTFALL_NUMERIC: they make no rising curve. */
 SOFTFALL_API softfall_status softfall_form_material(const softfall_form *form, const double *value,
@@ -201,6 +234,36 @@ SOFTFALL_API softfall_status softfall_material_bend(softfall_material *material,
 SOFTFALL_API softfall_status softfall_material_write(const softfall_material *material, const char *folder,
                                                      const char *name, const char *title,
                                                      const char *comments, softfall_error *error);
+
+/* ---- Compression tests (libsoftfall-build) ---- */
+
+/* What the file of a compression test does not say; zeros and NULL: nothing. */
+typedef struct softfall_compression_source {
+    const char *path;
+    double rate, area, thickness; /* 1/s; m2 and m, of a specimen whose force and displacement are in the file */
+    int correct_toe, invert;      /* 1: correct the toe; the sign of 1: strain, 2: stress, 3: both */
+    double contact_force;         /* N, at which displacement is zero */
+    const char *cycle;            /* number of the cycle that is taken; NULL: the first */
+} softfall_compression_source;
+
+/* A test as the fits take it: loading, then perhaps unloading; the arrays are its own. */
+typedef struct softfall_compression_test {
+    int64_t count, loading;       /* points, of which the first are loading */
+    const double *strain, *stress; /* [count] -, Pa */
+    double largest_strain, largest_stress;
+    int cycles, dwell;          /* in the file; points of rests under strain that were left out */
+    const char *interpretation; /* how the file was read */
+} softfall_compression_test;
+SOFTFALL_API softfall_status softfall_compression_read(const softfall_compression_source *source,
+                                                       softfall_compression_test **out,
+                                                       softfall_error *error);
+SOFTFALL_API void softfall_compression_free(softfall_compression_test *test);
+
+/* Fits a free curve, its rate dependence and its unloading to the tests that a file names
+ * (docs/identification.md), and writes material.cfg with its curves, fit.json, fit.csv and loading_curve.csv
+ * into the folder; `replace` 0: SOFTFALL_INPUT if one of them is there. */
+SOFTFALL_API softfall_status softfall_fit_compression(const char *path, const char *folder, int replace,
+                                                      softfall_error *error);
 
 /* ---- Input files of your own (libsoftfall-build) ---- */
 

@@ -214,8 +214,6 @@ def main(arguments: Sequence[str]) -> int:
     if name in ("-V", "--version"):
         print(f"softfall {library.version()}")
         return 0
-    if name == "fit" and list(arguments[1:2]) == ["compression"]:
-        return _hand_over("softfall-fit", arguments[1:])
     if name in PROGRAMS:
         return _hand_over(f"softfall-{name}", arguments[1:])
     if name not in COMMANDS:
@@ -224,11 +222,13 @@ def main(arguments: Sequence[str]) -> int:
         hint = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(words)}"
         print(plain(f"softfall: unknown command '{name}'; {hint}") if name else _help(), file=sys.stderr)
         return USAGE
-    prog = f"softfall {name}"
+    prog, place, rest = f"softfall {name}", COMMANDS[name][0], arguments[1:]
+    if name == "fit" and list(rest[:1]) == ["compression"]:
+        prog, place, rest = f"{prog} compression", "fit.compression_command", rest[1:]
     warnings.showwarning = lambda message, *_, **__: _complain(prog, f"warning: {message}")
     try:
-        module = importlib.import_module(f".{COMMANDS[name][0]}", __package__)
-        code = int(module.run(module.parser(prog).parse_args(arguments[1:])))
+        module = importlib.import_module(f".{place}", __package__)
+        code = int(module.run(module.parser(prog).parse_args(rest)))
         sys.stdout.flush()
         return code
     except KeyboardInterrupt:

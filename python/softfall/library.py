@@ -45,6 +45,8 @@ def _load() -> c.CDLL:
             library.softfall_material_parameters.argtypes = library.softfall_material_free.argtypes = [c.c_void_p]
             library.softfall_form_parameters.restype, library.softfall_form_start.restype = c.c_char_p, None
             library.softfall_form_parameters.argtypes = library.softfall_form_free.argtypes = [c.c_void_p]
+            library.softfall_form_pole.restype, library.softfall_form_pole.argtypes = c.c_double, [c.c_void_p, c.POINTER(c.c_double)]
+            library.softfall_form_loading.restype = library.softfall_compression_free.restype = None
             library.softfall_record_grade.argtypes = library.softfall_record_free.argtypes = [c.c_void_p]
             return library
     raise Error(f"there is no library libsoftfall-build.so in {prefix}/lib, beside the programs of {programs.folder()}", 3)
@@ -164,6 +166,12 @@ class Material:
         _call("softfall_compress", self._handle, c.c_int(free_sides), _array(time), _array(strain), c.c_int64(strain.size), _array(stress))
         return stress
 
+    def cycles(self, time: Any, strain: Any, pause: Any) -> Array:
+        """softfall_compress_cycles: nominal stress in Pa; arrays of double of one length."""
+        stress: Array = np.empty_like(strain)
+        _call("softfall_compress_cycles", self._handle, _array(time), _array(strain), _array(pause), c.c_int64(strain.size), _array(stress))
+        return stress
+
     def cushion(self, static_stress: float, thickness: float, drop_height: float) -> float:
         """softfall_cushion: peak deceleration (g) of a flat mass on a block."""
         peak = c.c_double()
@@ -185,6 +193,7 @@ class Parameter(NamedTuple):
     prior_sd: float
     used: bool
     usual: bool
+    of_curve: bool
 
 
 class Foam(Material):
@@ -212,13 +221,79 @@ class Foam(Material):
             _call("softfall_material_write", self._handle, os.fsencode(folder), name.encode(), title.encode(), comments.encode())
 
 
-class Form:
-    """A form of the loading curve on a start material: softfall_form_read. Values are arrays in SI units, in the order of `parameters`."""
+class _Terms(c.Structure):
+    _fields_ = [(name, c.c_double) for name in ("density", "damp", "hu", "shape", "unloading_alpha", "informed")] + \
+        [("terms", c.c_int), *((name, c.c_double * 6) for name in ("mu", "alpha", "nu"))]
 
-    def __init__(self, material: str, curve: str, solid_density: float) -> None:
+
+class Hyperfoam(Foam):
+    """A hyperfoam in memory: softfall_hyperfoam_material. `terms`: mu (Pa), alpha and nu of each; `unloading`: HU, SHAPE, ALPHA."""
+
+    def __init__(self, density: float, damp: float, terms: Any, unloading: Sequence[float] = (1.0, 1.0, 1.0), informed: float = 0.0) -> None:
+        made = c.c_void_p()
+        columns = [(c.c_double * 6)(*column) for column in zip(*terms)]
+        _call("softfall_hyperfoam_material", c.byref(_Terms(density, damp, *unloading, informed, len(terms), *columns)), c.byref(made))
+        super().__init__(made)
+
+    def loading(self, strain: Any) -> tuple[Array, Array, Array]:
+        """softfall_hyperfoam_loading: nominal stress (Pa), lateral strain and W (J/m3) with free sides."""
+        made = [np.empty_like(strain) for _ in range(3)]
+        _call("softfall_hyperfoam_loading", self._handle, _array(strain), c.c_int64(strain.size), *map(_array, made))
+        return made[0], made[1], made[2]
+
+
+class CompressionTest(NamedTuple):
+    """A compression test as the fits take it: loading, then unloading."""
+
+    strain: Array
+    stress: Array  # Pa
+    loading: int
+    largest_strain: float
+    largest_stress: float
+    cycles: int
+    dwell: int
+    words: str
+
+
+class _Source(c.Structure):
+    _fields_ = [("path", c.c_char_p), ("rate", c.c_double), ("area", c.c_double), ("thickness", c.c_double), ("toe", c.c_int), ("invert", c.c_int),
+                ("contact_force", c.c_double), ("cycle", c.c_char_p)]
+
+
+class _Test(c.Structure):
+    _fields_ = [("count", c.c_int64), ("loading", c.c_int64), ("strain", c.POINTER(c.c_double)), ("stress", c.POINTER(c.c_double)),
+                ("largest_strain", c.c_double), ("largest_stress", c.c_double), ("cycles", c.c_int), ("dwell", c.c_int), ("words", c.c_char_p)]
+
+
+def read_compression(path: str, rate: float, area: float, thickness: float, toe: bool, invert: int, contact_force: float, cycle: str) -> CompressionTest:
+    """softfall_compression_read: rate in 1/s, area in m2 and thickness in m (0: unknown), force in N; `cycle` "": the first."""
+    made = c.POINTER(_Test)()
+    with _one_at_a_time:
+        _call("softfall_compression_read", c.byref(_Source(os.fsencode(path), rate, area, thickness, toe, invert, contact_force, cycle.encode() or None)), c.byref(made))
+    t = made.contents
+    try:
+        return CompressionTest(np.array(t.strain[:t.count]), np.array(t.stress[:t.count]), t.loading, t.largest_strain, t.largest_stress, t.cycles, t.dwell,
+                               t.words.decode(errors="replace"))
+    finally:
+        _load().softfall_compression_free(made)
+
+
+def fit_compression(path: str, folder: str, replace: bool) -> None:
+    """softfall_fit_compression: the fit of a free curve, whose files it writes."""
+    with _one_at_a_time:
+        _call("softfall_fit_compression", os.fsencode(path), os.fsencode(folder), c.c_int(replace))
+
+
+class Form:
+    """A form of the loading curve on a start material, or on a foam of a density alone. Values are arrays in SI units, in the order of `parameters`."""
+
+    def __init__(self, material: str | float, curve: str, solid_density: float) -> None:
         self._handle, self._free = c.c_void_p(), _load().softfall_form_free
         with _one_at_a_time:
-            _call("softfall_form_read", os.fsencode(material), curve.encode(), c.c_double(solid_density), c.byref(self._handle))
+            if isinstance(material, str):
+                _call("softfall_form_read", os.fsencode(material), curve.encode(), c.c_double(solid_density), c.byref(self._handle))
+            else:
+                _call("softfall_form_make", c.c_double(material), curve.encode(), c.c_double(solid_density), c.byref(self._handle))
         told = json.loads(_load().softfall_form_parameters(self._handle).decode(errors="replace"))
         self.curve, self.formula, self.density, self.curves = str(told["curve"]), str(told["formula"]), float(told["density"]), int(told["curves"])
         self.parameters = [Parameter(**entry) for entry in told["parameters"]]
@@ -235,6 +310,15 @@ class Form:
         made = np.empty_like(values)
         _load().softfall_form_start(self._handle, _array(values), flags, _array(made))
         return made
+
+    def pole(self, values: Any) -> float:
+        return float(_load().softfall_form_pole(self._handle, _array(values)))
+
+    def loading(self, values: Any, rate: float, strain: Any) -> Array:
+        """softfall_form_loading: nominal stress in Pa; strains ascend. `rate` 0: the curve alone."""
+        stress: Array = np.empty_like(strain)
+        _load().softfall_form_loading(self._handle, _array(values), c.c_double(rate), _array(strain), c.c_int64(strain.size), _array(stress))
+        return stress
 
     def foam(self, values: Any, informed: float = 0.0) -> Foam:
         """softfall_form_material: the foam of these values; a NumericError says why they make none."""

@@ -20,7 +20,7 @@ FIELDS = ("kind", "lateral", "heading", "units", "rate", "specimen", "cycle", "s
 def parser(prog: str) -> Parser:
     """Returns the command line."""
     made = Parser(prog, "[OPTION...] FILE [-o CLEAN.csv]",
-                  "Reads the file of a laboratory, whatever wrote it, says how, and writes the table\nthat softfall-post, softfall-fit and `curve =` of a material read.",
+                  "Reads the file of a laboratory, whatever wrote it, says how, and writes the table\nthat softfall-post, softfall fit and `curve =` of a material read.",
                   "What could be read in two ways is refused. docs/formats.md lists what is read.")
     add = made.options.add_argument
     add("file", metavar="FILE", help=argparse.SUPPRESS)

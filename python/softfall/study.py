@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""softfall sweep and softfall-fit compression as functions: many drops by a plan, a material from compression tests."""
+"""softfall sweep and softfall fit compression as functions: many drops by a plan, a material from compression tests."""
 from __future__ import annotations
 
 import csv
@@ -135,18 +135,20 @@ class Fit:
 
 def fit_compression(tests: str | os.PathLike[str] | Mapping[str, Any], output: str | os.PathLike[str] | None = None,
                     **options: Any) -> Fit:
-    """Runs softfall-fit compression (docs/identification.md) and returns the fitted material.
+    """Runs `softfall fit compression` (docs/identification.md) and returns the fitted material.
 
     `tests`: a configuration file, or a dict with its words, such as {"name": "foam", "density": "35 kg/m3", "specimen": {"side": "50 mm",
     "thickness": "50 mm"}, "tests": [{"file": "slow.csv", "rate": "0.1 1/min"}]}, whose paths begin beside `output`. `output`: a folder, by
-    default NAME-fit in the present one, whose files are replaced with force=True. `options` are those of the program. Files of another
-    form than the program reads are read by `softfall read` first.
+    default NAME-fit in the present one, whose files are replaced with force=True. `options` are those of the command. Files of another
+    form than it reads are read by `softfall read` first.
     """
+    from .fit import compression_command  # with scipy, which takes a second
     config, folder = _prepare(tests, output, "fit")
     with output_files.scratch() as scratch:
         while True:
             try:
-                programs.run("fit", ["compression", str(config), f"--output={folder}", *programs.options(options)])
+                words = [f"--output={folder}", *programs.options(options), "--", str(config)]
+                compression_command.run(compression_command.parser("softfall fit compression").parse_args(words), lambda text: None)
                 return Fit(folder)
             except InputError as error:
                 advice = laboratory.advised(error)

@@ -6,6 +6,7 @@
 #include "case/read.h"
 #include "material/low_density_foam.h"
 #include "report/row.h"
+#include "study/fit/compression/compression_model.h"
 #include "study/fit/form/form.h"
 #include "study/material_file.h"
 #include <math.h>
@@ -29,6 +30,7 @@ static void put_parameter(sf_json *json, const sf_foam_form *form, sf_foam_param
                     {"prior_sd", sf_foam_form_prior_sd(form, p)});
     sf_json_bool(json, "used", sf_curve_form_uses(form->curve, p));
     sf_json_bool(json, "usual", entry && entry->usual);
+    sf_json_bool(json, "of_curve", entry != NULL);
 }
 
 static char *list_parameters(const sf_foam_form *form, sf_error *err) {
@@ -60,26 +62,50 @@ static sf_status take_base(const char *path, sf_foam_form *form, sf_error *err) 
     return SF_OK;
 }
 
+/* `path` NULL: the base is there. */
 static sf_status read_form(const char *path, const char *curve, double solid_density, softfall_form *f,
                            sf_error *err) {
     f->form.curve = sf_curve_form_find(curve);
     if (!f->form.curve)
         return SF_REFUSE(err, "there is no form \"%.80s\"; expected one of %s", curve, sf_curve_form_words());
-    SF_TRY(take_base(path, &f->form, err));
+    if (path)
+        SF_TRY(take_base(path, &f->form, err));
     f->form.solid_density = solid_density;
     f->parameters = list_parameters(&f->form, err);
     return err->status;
 }
 
-softfall_status softfall_form_read(const char *material, const char *curve, double solid_density,
-                                   softfall_form **out, softfall_error *error) {
+static softfall_status make_form(const char *material, double density, const char *curve,
+                                 double solid_density, softfall_form **out, softfall_error *error) {
+    static const double USUAL_MODULUS = 1e6;
     sf_error err = SF_ERROR_INIT;
     *out = sf_alloc(&err, 1, sizeof **out, "a form");
+    if (*out)
+        (*out)->form.base = (sf_foam_card){.density = density,
+                                           .modulus = USUAL_MODULUS,
+                                           .hysteresis_hu = 1,
+                                           .hysteresis_shape = 1,
+                                           .hysteresis_alpha = 1,
+                                           .maxwell_rate = 5000,
+                                           .rate_filter_time = 1e-4,
+                                           .tension_cutoff = 1e30,
+                                           .densification_limit = 1,
+                                           .memory = {.start = 1}};
     if (*out && read_form(material, curve, solid_density, *out, &err) != SF_OK) {
         softfall_form_free(*out);
         *out = NULL;
     }
     return softfall_return(&err, error);
+}
+
+softfall_status softfall_form_read(const char *material, const char *curve, double solid_density,
+                                   softfall_form **out, softfall_error *error) {
+    return make_form(material, 0, curve, solid_density, out, error);
+}
+
+softfall_status softfall_form_make(double density, const char *curve, double solid_density,
+                                   softfall_form **out, softfall_error *error) {
+    return make_form(NULL, density, curve, solid_density, out, error);
 }
 
 void softfall_form_free(softfall_form *form) {
@@ -108,6 +134,28 @@ void softfall_form_start(const softfall_form *form, const double *given, const i
         sf_foam_form_start_lock(value);
 }
 
+double softfall_form_pole(const softfall_form *form, const double *value) {
+    return form->form.curve->pole ? sf_curve_form_pole(form->form.curve, value) : 1;
+}
+
+void softfall_form_loading(const softfall_form *form, const double *value, double rate, const double *strain,
+                           int64_t count, double *stress) {
+    double reference = value[SF_PARAMETER_RATE_REFERENCE], time = value[SF_PARAMETER_RATE_FILTER_TIME];
+    sf_compression_walk walk = {0};
+    if (!form->form.curve->stress)
+        return;
+    sf_curve_form_stresses(form->form.curve, value, (int)count, strain, stress);
+    for (int64_t i = 0; rate > 0 && i < count; i++) {
+        /* the rate is behind the low pass (theory, eq. 22) */
+        double over = rate / reference * (time > 0 ? -expm1(-strain[i] / (rate * time)) : 1);
+        if (value[SF_PARAMETER_RATE_FACTOR] > 0 && over > 1)
+            stress[i] *= 1 + value[SF_PARAMETER_RATE_FACTOR] * log10(over);
+        if (value[SF_PARAMETER_ED] > 0)
+            stress[i] += value[SF_PARAMETER_ED] * sf_compression_maxwell(value[SF_PARAMETER_BETA1], rate, 1,
+                                                                         strain[i], false, &walk);
+    }
+}
+
 softfall_status softfall_form_material(const softfall_form *form, const double *value, double informed,
                                        softfall_material **out, softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
@@ -118,14 +166,7 @@ softfall_status softfall_form_material(const softfall_form *form, const double *
         return softfall_return(&err, error);
     card.informed_strain = informed;
     const sf_material made = sf_foam_material(&card);
-    softfall_material *m = sf_alloc(&err, 1, sizeof *m, "a material");
-    if (m && !(m->parameters = strdup("")))
-        SF_NO_MEMORY(&err, "a material");
-    if (m && (err.status != SF_OK || sf_material_copy(&made, &m->data, &err) != SF_OK)) {
-        softfall_material_free(m);
-        m = NULL;
-    }
-    *out = m;
+    *out = softfall_material_of(&made, &err);
     return softfall_return(&err, error);
 }
 

@@ -3,6 +3,7 @@
 #include "api/api_material.h"
 
 #include "case/read.h"
+#include "material/hyperfoam.h"
 #include "material/laws.h"
 #include "study/cushion.h"
 #include <math.h>
@@ -16,6 +17,17 @@ softfall_status softfall_material_read(const char *path, double temperature, sof
         *out = NULL;
     }
     return softfall_return(&err, error);
+}
+
+softfall_material *softfall_material_of(const sf_material *material, sf_error *err) {
+    softfall_material *m = sf_alloc(err, 1, sizeof *m, "a material");
+    if (m && !(m->parameters = strdup("")))
+        SF_NO_MEMORY(err, "a material");
+    if (m && (err->status != SF_OK || sf_material_copy(material, &m->data, err) != SF_OK)) {
+        softfall_material_free(m);
+        m = NULL;
+    }
+    return m;
 }
 
 void softfall_material_free(softfall_material *material) {
@@ -68,6 +80,62 @@ softfall_status softfall_compress(const softfall_material *material, int free_si
     if (check_path(&path, &err) == SF_OK && sf_material_law_build(&material->data, &law, &err) == SF_OK)
         sf_material_point_follow(&law, &path, stress, &err);
     sf_material_law_free(&law);
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_compress_cycles(const softfall_material *material, const double *time,
+                                         const double *strain, const double *pause, int64_t count,
+                                         double *stress, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};
+    sf_uniaxial point = {0};
+    if (sf_material_law_build(&material->data, &law, &err) == SF_OK)
+        for (int64_t i = 0; i < count; i++) {
+            if (pause[i] > 0)
+                sf_material_point_rest(&law, pause[i], &point);
+            stress[i] = law.law->uniaxial(law.numbers, i > 0 ? time[i] - time[i - 1] : 1, strain[i], &point);
+        }
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_hyperfoam_material(const softfall_hyperfoam *values, softfall_material **out,
+                                            softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_hyperfoam_card card = {.density = values->density,
+                              .damp = values->damp,
+                              .hysteresis_hu = values->hu,
+                              .hysteresis_shape = values->shape,
+                              .hysteresis_alpha = values->unloading_alpha,
+                              .maxwell_rate = 5000,
+                              .rate_reference = 0.01,
+                              .rate_filter_time = 1e-4,
+                              .stable_to = 0.9,
+                              .informed_strain = values->informed};
+    for (int k = 0; k < values->terms && k < SF_HYPERFOAM_TERMS; k++)
+        card.term[k] = (sf_hyperfoam_term){
+            .mu = values->mu[k], .alpha = values->alpha[k], .nu = values->nu[k]};
+    const sf_material made = sf_hyperfoam_material(&card);
+    *out = softfall_material_of(&made, &err);
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_hyperfoam_loading(const softfall_material *material, const double *strain,
+                                           int64_t count, double *stress, double *lateral, double *energy,
+                                           softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    double stretch[3] = {1, 1, 1};
+    if (material->data.law != &sf_hyperfoam_law)
+        return SF_REFUSE(&err, "the material is no hyperfoam"), softfall_return(&err, error);
+    const sf_hyperfoam foam = sf_hyperfoam_build(material->data.card);
+    for (int64_t i = 0; i < count; i++) {
+        stretch[0] = 1 - strain[i];
+        bool found = sf_hyperfoam_release(&foam, 1, stretch);
+        sf_hyperfoam_point p = sf_hyperfoam_evaluate(&foam, stretch);
+        stress[i] = found ? -p.t[0] : NAN;
+        lateral[i] = found ? stretch[1] - 1 : NAN;
+        energy[i] = found ? p.energy : NAN;
+        stretch[1] = stretch[2] = found ? stretch[1] : 1;
+    }
     return softfall_return(&err, error);
 }
 

@@ -7,3 +7,6 @@ struct softfall_material {
     sf_material data;
     char *parameters; /* owned */
 };
+
+/* Returns a handle of a copy; NULL without memory. */
+softfall_material *softfall_material_of(const sf_material *material, sf_error *err);

@@ -4,7 +4,7 @@
 #include "build_info.h"
 #include "base/near.h"
 #include "base/program.h"
-#include "study/fit/compression/compression_kind.h"
+#include "study/fit/compression/compression_command.h"
 static const struct {
     const char *word;
     int (*run)(int argc, char **argv);

@@ -76,7 +76,7 @@ def _tests(foam: Foam, blocks: list[Block], has_rates: bool) -> None:
             curve.stress.append(row[0])
             curve.strain.append(row[1])
             if not has_rates and len(row) > 2 and row[2]:
-                foam.note("the lateral strain of the test is not used: the curve becomes a low_density_foam, which has none; softfall-fit compression fits a hyperfoam to both")
+                foam.note("the lateral strain of the test is not used: the curve becomes a low_density_foam, which has none; softfall fit compression fits a hyperfoam to both")
         for curve in by_rate.values():
             if not has_rates and min(curve.strain) >= 0:
                 raise refuse(block.place, "the test of the hyperfoam has no compression, which is negative in it; give a test of compression")

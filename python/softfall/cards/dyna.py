@@ -311,7 +311,7 @@ def _mat177(deck: Deck, foam: Foam, block: Block, first: int) -> Card:
     foam.curves = curves_of(deck, card["LCID"], "LCID", block.place)[:1]
     if min(foam.curves[0].strain) < 0:
         foam.curves[0].turn()  # tension is positive
-    foam.drop("N", beta, "the curve becomes a low_density_foam without lateral strain; softfall-fit compression fits a hyperfoam to it")
+    foam.drop("N", beta, "the curve becomes a low_density_foam without lateral strain; softfall fit compression fits a hyperfoam to it")
     return card | deck.card(block, first + 1, "R M")
 
 

@@ -305,7 +305,7 @@ def unload(foam: Foam) -> None:
     part = min(1.0, max(0.01, energy[1] / energy[0]))
     foam.values["HU"], foam.values["SHAPE"] = (2 * part - 1, 1.0) if part >= 0.55 else (0.1 * part, (1 - 0.1 * part) / (0.9 * part) - 1)
     foam.note(f"unloading follows a curve in the card, which returns {100 * part:.3g} % of the energy: HU = {foam.values['HU']:.3g} and SHAPE = {foam.values['SHAPE']:.3g} "
-              "return as much, along another path; softfall-fit compression fits HU, SHAPE and ALPHA to the path")
+              "return as much, along another path; softfall fit compression fits HU, SHAPE and ALPHA to the path")
 
 
 def finish(foam: Foam) -> None:

@@ -155,7 +155,8 @@ class Input:
         return [drop for drop in self.drops if not drop.predicted]
 
 
-def _quantity(group: Setting, name: str, unit: str, low: float = 0.0, default: float | None = None) -> float:
+def read_quantity(group: Setting, name: str, unit: str, low: float = 0.0, default: float | None = None) -> float:
+    """Returns a quantity above a bound, in SI units; without a default it is required."""
     found = group.get(name)
     if found is None and default is not None:
         return default
@@ -173,7 +174,7 @@ def _quantity(group: Setting, name: str, unit: str, low: float = 0.0, default: f
     return value
 
 
-_EXAMPLES = {"m": "50 mm", "s-1": "10 1/min", "kg m-3": "940 kg/m3", "Pa": "101 kPa", "s": "0.5 ms", "Pa s": "100 Pa s", "m s-1": "5 mm/min"}
+_EXAMPLES = {"m": "50 mm", "m2": "25 cm2", "N": "2 N", "s-1": "10 1/min", "kg m-3": "940 kg/m3", "Pa": "101 kPa", "s": "0.5 ms", "Pa s": "100 Pa s", "m s-1": "5 mm/min"}
 
 
 # ---- drops
@@ -284,7 +285,7 @@ def _name(group: Setting, usual: str, number: int) -> str:
 def _compression(group: Setting, number: int) -> Compression:
     group.names(("name", "file", "rate", "specimen", "toe_correction", "invert", "sd", "cycle"))
     name, path = _name(group, "compression", number), group.file("file")
-    rate, sd = _quantity(group, "rate", "s-1"), group.number("sd", 1e-4, 1, 0.05)
+    rate, sd = read_quantity(group, "rate", "s-1"), group.number("sd", 1e-4, 1, 0.05)
     options = {"cycle": group.text("cycle")} if group.get("cycle") else {}
     if group.get("specimen"):
         specimen = group.member("specimen")
@@ -345,7 +346,7 @@ def _cushion(group: Setting, number: int) -> Cushion:
     kinds = [key for key in ("file", "points", "stress_energy") if group.get(key)]
     if len(kinds) != 1:
         group.refuse("a cushion curve is one of file, points and stress_energy")
-    name, thickness, height = _name(group, "cushion", number), _quantity(group, "thickness", "m"), _quantity(group, "drop_height", "m")
+    name, thickness, height = _name(group, "cushion", number), read_quantity(group, "thickness", "m"), read_quantity(group, "drop_height", "m")
     if kinds == ["file"]:
         path = group.file("file")
         text = output_files.read(path).decode(errors="replace")
@@ -365,7 +366,7 @@ def _cushion(group: Setting, number: int) -> Cushion:
     else:
         inner = group.member("stress_energy")
         inner.names(("A", "B", "from", "to"))
-        a, low, high = (_quantity(inner, key, "Pa") for key in ("A", "from", "to"))
+        a, low, high = (read_quantity(inner, key, "Pa") for key in ("A", "from", "to"))
         b = inner.number("B", 1e-6, 10) * 1e-3  # per J/m3
         if not low < high:
             inner.refuse("from is not below to")
@@ -394,7 +395,7 @@ def _starts(groups: list[Setting], form: library.Form, forms: list[library.Form]
                 item.refuse(f'unknown parameter "{item.name[:80]}" of the foam')
             if not parameter.used and not (holder is groups[0] and any(one.parameters[one.index[item.name]].used for one in forms)):
                 item.refuse(f'start: {item.name} is not a parameter of the form "{form.curve}"')
-            value = _quantity(group, item.name, parameter.quantity) if parameter.quantity else group.number(item.name, parameter.low, parameter.high)
+            value = read_quantity(group, item.name, parameter.quantity) if parameter.quantity else group.number(item.name, parameter.low, parameter.high)
             if not parameter.low <= value <= parameter.high:
                 item.refuse(f"{item.name} is {value:g}, outside of {parameter.low:g} to {parameter.high:g}")
             given[item.name] = value
@@ -410,6 +411,14 @@ def _listed(holder: Setting) -> dict[str, Setting]:
             entry.refuse(f"unknown: {name} is given twice")
         made[name] = entry
     return made
+
+
+def refuse_solid(root: Setting, solid: float, density: float = 0.0) -> None:
+    """Refuses a density of the solid (kg/m3, 0: not given) that no foam of this density (0: not known yet) is made of."""
+    if solid and not GIVEN_SOLID[0] <= solid <= GIVEN_SOLID[1]:
+        root.member("solid_density").refuse(f"solid_density is {solid:g} kg/m3; solids that foams are made of have {GIVEN_SOLID[0]:g} to {GIVEN_SOLID[1]:g} kg/m3")
+    if solid and not density < 0.5 * solid:
+        root.member("solid_density").refuse(f"solid_density is {solid:g} kg/m3, the foam's density {density:g} kg/m3: a foam is less than half solid")
 
 
 def _check_solid(root: Setting, own: Setting, form: library.Form, given: dict[str, float], listed: dict[str, Setting], solid: float) -> None:
@@ -503,7 +512,7 @@ def _chain(root: Setting) -> tuple[list[float], list[float]]:
         if not (values[0] > 0 and 0 < values[1] < 1):
             root.member("mount").refuse('mount must be like "f = 420 Hz, damping = 0.05", with a damping between 0 and 1')
     if root.get("coupling"):
-        values[2] = _quantity(root, "coupling", "s")
+        values[2] = read_quantity(root, "coupling", "s")
     sd = [root.number(f"{name}_sd", 0, 0.5, 0.0) for name in CHAIN]
     for k, name in enumerate(CHAIN):
         if sd[k] > 0 and not root.get("coupling" if k == 2 else "mount"):
@@ -545,9 +554,8 @@ def read(path: str) -> Input:
         (root.get("name") or root).refuse(f'the name "{name[:80]}" names files: up to 63 characters, no slashes or quotes, and not fit..., which other files are called')
     for drop in drops:
         _check_case(drop, material)
-    solid = _quantity(root, "solid_density", "kg m-3", 0.0, 0.0)
-    if solid and not GIVEN_SOLID[0] <= solid <= GIVEN_SOLID[1]:
-        root.member("solid_density").refuse(f"solid_density is {solid:g} kg/m3; solids that foams are made of have {GIVEN_SOLID[0]:g} to {GIVEN_SOLID[1]:g} kg/m3")
+    solid = read_quantity(root, "solid_density", "kg m-3", 0.0, 0.0)
+    refuse_solid(root, solid)
     listed = root.get("forms")
     if listed and root.get("curve_form"):
         listed.refuse("give either forms or curve_form")
@@ -562,8 +570,7 @@ def read(path: str) -> Input:
             forms.append(library.Form(str(material), word, solid))
         except InputError as error:
             (entry.get(key) or entry).refuse(f"{key}: {error}")
-        if solid and not forms[-1].density < 0.5 * solid:
-            root.member("solid_density").refuse(f"solid_density is {solid:g} kg/m3, the foam's density {forms[-1].density:g} kg/m3: a foam is less than half solid")
+        refuse_solid(root, solid, forms[-1].density)
     models = [_model(root, entry, form, forms, solid) for entry, form in zip(entries, forms)]
     posterior = root.flag("posterior", True)
     if len(models) > 1 and not posterior:

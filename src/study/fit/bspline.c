@@ -2,6 +2,7 @@
 #include "study/fit/bspline.h"
 
 #include "study/fit/least_squares.h"
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multimin.h>
@@ -119,54 +120,36 @@ double sf_spline_abscissa(const sf_spline *spline, int j) {
 static const int TRIED[] = {3, 4, 5, 6, 8, 10, 12, 14, 17, 20, 24, 28, 34, SF_SCATTER_FINEST};
 enum { TRIALS = sizeof TRIED / sizeof TRIED[0], ROUNDS = 3 };
 
-/* Weighted least squares of one branch: normal equations, which are banded and small. `weighted` is the sum
- * of squares of deviation over sigma, `parameters` the number of coefficients. */
+/* Weighted least squares of one branch. `weighted` is the sum of squares of deviation over sigma, `parameters`
+ * the number of coefficients. */
 typedef struct smoothing {
     double weighted;
     int parameters;
 } smoothing;
 
-static sf_status accumulate(const sf_scatter_branch *b, sf_spline *spline, gsl_matrix *normal,
-                            gsl_vector *right) {
-    double row[SF_SPLINE_COEFFICIENTS], trace = 0;
-    size_t n = normal->size1;
-    for (int i = 0; i < b->count; i++) {
-        double weight = 1 / (b->sigma[i] * b->sigma[i]);
-        sf_spline_value(spline, b->x[i], row);
-        for (size_t j = 0; j < n; j++) {
-            if (row[j] == 0)
-                continue;
-            *gsl_vector_ptr(right, j) += weight * row[j] * b->y[i];
-            for (size_t k = 0; k <= j; k++)
-                *gsl_matrix_ptr(normal, j, k) += weight * row[j] * row[k];
-        }
-    }
-    for (size_t j = 0; j < n; j++)
-        trace = fmax(trace, gsl_matrix_get(normal, j, j));
-    for (size_t j = 0; j < n; j++) /* keeps a coefficient without data from making the matrix singular */
-        *gsl_matrix_ptr(normal, j, j) += 1e-12 * trace;
-    return gsl_linalg_cholesky_decomp1(normal) == GSL_SUCCESS ? SF_OK : SF_ERR_NUMERIC;
-}
-
 static sf_status solve(const sf_scatter_branch *b, sf_spline *spline, smoothing *out, sf_error *err) {
-    size_t n = (size_t)spline->count;
-    double row[SF_SPLINE_COEFFICIENTS];
-    SF_MATRIX *normal = sf_matrix(n, n, err);
-    SF_VECTOR *right = sf_vector(n, err);
-    if (err->status == SF_OK && accumulate(b, spline, normal, right) != SF_OK)
-        SF_FAIL(err, SF_ERR_NUMERIC, "a branch of %d points cannot be smoothed", b->count);
-    if (err->status == SF_OK)
-        gsl_linalg_cholesky_svx(normal, right);
-    *out = (smoothing){.parameters = spline->count};
-    for (int i = 0; i < b->count && err->status == SF_OK; i++) {
-        sf_spline_value(spline, b->x[i], row);
-        b->smooth[i] = 0;
-        for (size_t j = 0; j < n; j++)
-            b->smooth[i] += row[j] * gsl_vector_get(right, j);
-        double deviation = (b->y[i] - b->smooth[i]) / b->sigma[i];
-        out->weighted += deviation * deviation;
+    size_t n = (size_t)spline->count, points = (size_t)b->count;
+    SF_MATRIX *rows = sf_matrix(points, n, err), *normal = sf_matrix(n, n, err);
+    SF_VECTOR *over = sf_vector(points, err), *right = sf_vector(n, err);
+    SF_TRY(err->status);
+    for (size_t i = 0; i < points; i++) {
+        sf_spline_value(spline, b->x[i], gsl_matrix_ptr(rows, i, 0));
+        gsl_vector_view row = gsl_matrix_row(rows, i);
+        gsl_vector_scale(&row.vector, 1 / b->sigma[i]);
+        gsl_vector_set(over, i, b->y[i] / b->sigma[i]);
     }
-    return err->status;
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, rows, 0, normal);
+    gsl_blas_dgemv(CblasTrans, 1, rows, over, 0, right);
+    gsl_vector_view diagonal = gsl_matrix_diagonal(normal);
+    gsl_vector_add_constant(&diagonal.vector, 1e-12 * gsl_vector_max(&diagonal.vector)); /* without data */
+    if (gsl_linalg_cholesky_decomp1(normal) != GSL_SUCCESS)
+        return SF_FAIL(err, SF_ERR_NUMERIC, "a branch of %d points cannot be smoothed", b->count);
+    gsl_linalg_cholesky_svx(normal, right);
+    gsl_blas_dgemv(CblasNoTrans, -1, rows, right, 1, over); /* deviations over sigma */
+    *out = (smoothing){pow(gsl_blas_dnrm2(over), 2), spline->count};
+    for (size_t i = 0; i < points; i++)
+        b->smooth[i] = b->y[i] - b->sigma[i] * gsl_vector_get(over, i);
+    return SF_OK;
 }
 
 static sf_status smooth(const sf_scatter_branch *b, sf_spline_grading grading, int intervals, smoothing *out,
@@ -269,7 +252,6 @@ sf_status sf_scatter_estimate(int branch_count, const sf_scatter_branch *branche
     likelihood l = {.count = branch_count, .branches = branches};
     double size = 0;
     int intervals;
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
     for (int k = 0; k < branch_count; k++)
         for (int i = 0; i < branches[k].count; i++)
             size = fmax(size, fabs(branches[k].y[i]));
@@ -284,14 +266,10 @@ sf_status sf_scatter_estimate(int branch_count, const sf_scatter_branch *branche
                     branches[k].sigma[i] =
                         hypot(scatter->absolute, scatter->relative * branches[k].smooth[i]);
     }
-    gsl_set_error_handler(handler);
     return err->status;
 }
 
 sf_status sf_scatter_intervals(int branch_count, const sf_scatter_branch *branches, int *intervals,
                                sf_error *err) {
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    choose_intervals(branch_count, branches, SF_GRADING_FOAM, intervals, err);
-    gsl_set_error_handler(handler);
-    return err->status;
+    return choose_intervals(branch_count, branches, SF_GRADING_FOAM, intervals, err);
 }

@@ -74,7 +74,8 @@ typedef struct sf_scatter {
 
 enum { SF_SCATTER_FINEST = 40, SF_SCATTER_BRANCHES = 16 };
 
-/* Smooths and estimates, at most SF_SCATTER_BRANCHES of them; SF_ERR_NUMERIC if one cannot be smoothed. */
+/* Smooths and estimates, at most SF_SCATTER_BRANCHES of them; SF_ERR_NUMERIC if one cannot be smoothed. GSL's
+ * error handler must be off. */
 sf_status sf_scatter_estimate(int branch_count, const sf_scatter_branch *branches, sf_scatter *scatter,
                               sf_error *err);
 

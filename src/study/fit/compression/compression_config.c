@@ -1,215 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/fit/compression/compression_config.h"
 
+#include <math.h>
+#include <string.h>
+
 const char *const sf_rate_model_names[] = {"none", "log", "maxwell", "curves", "auto"};
 /* In the order of sf_rate_model and sf_rule_choice. */
 static const char RATE_WORDS[] = "none|log|maxwell|curves|auto", RULE_WORDS[] = "auto|H1|H1_automatic|H2";
-
-/* ---- a form of the loading curve ---- */
-
-static const char FREE_FORM[] = "free";
-enum { SLOPE_POINTS = 4 }; /* of the slope that E begins with */
-
-/* A material with a rate factor: its filter of the rate is short beside an impact and costs no time step, and
- * little damping is enough (ADR 20). */
-static const double FILTER_TIME = 1e-4, FACTOR_FILTER_TIME = 5e-4; /* s */
-static const double FACTOR_DAMP = 0.05;
-
-/* True if the file names a form other than "free". */
-static sf_status is_form_asked(const sf_config *file, sf_config_item *root, bool *asked, sf_error *err) {
-    const char *name = FREE_FORM;
-    SF_TRY(sf_config_text(file, root, "curve_form", false, &name, err));
-    const sf_curve_form *form = sf_curve_form_find(name);
-    *asked = strcmp(name, FREE_FORM) != 0;
-    if (*asked && (!form || !form->stress))
-        return sf_config_refuse(file, config_setting_get_member(root, "curve_form"), err,
-                                "curve_form is \"%.80s\"; expected free or one of %s, but not table", name,
-                                sf_curve_form_words());
-    return SF_OK;
-}
-
-/* Slope through the origin of the first points of loading. */
-static double first_slope(const sf_compression_test *t, double range) {
-    double top = 0, bottom = 0;
-    for (int i = 0, used = 0; i < t->loading && (used < SLOPE_POINTS || t->strain[i] <= range); i++) {
-        used += t->strain[i] > 0;
-        top += t->strain[i] * t->stress[i];
-        bottom += t->strain[i] * t->strain[i];
-    }
-    return fmax(1e3, top / bottom);
-}
-
-static bool is_of_curve(const sf_form_request *r, sf_foam_parameter p) {
-    return p < SF_PARAMETER_COUNT &&
-           (p == SF_PARAMETER_E || p == SF_PARAMETER_LOCKED || sf_curve_form_entry(r->form.curve, p));
-}
-
-/* A value of the rate that the rate model does not have would be lost, or act where none is asked for. */
-static sf_status check_rate_value(const sf_config *file, sf_config_item *item, sf_foam_parameter p,
-                                  const sf_form_request *r, sf_error *err) {
-    sf_form_rate term = sf_form_rate_of(p);
-    if ((r->rate & term) != term)
-        return sf_config_refuse(file, item, err,
-                                "%s is given, but rate_model = \"%s\" has none: give rate_model = \"%s\" "
-                                "or \"both\", or leave it out",
-                                sf_parameter_get(p)->name, sf_form_rate_names[r->rate],
-                                sf_form_rate_names[term]);
-    return SF_OK;
-}
-
-static sf_status read_value(const sf_config *file, sf_config_item *group, sf_config_item *item,
-                            sf_form_request *r, sf_error *err) {
-    const char *name = config_setting_name(item);
-    sf_foam_parameter p = sf_parameter_find(name);
-    if (!is_of_curve(r, p) && (p == SF_PARAMETER_RATE_REFERENCE || !sf_form_rate_of(p)))
-        return sf_config_refuse(file, item, err,
-                                "start: \"%.80s\" is neither E, a parameter of curve_form = \"%s\", nor "
-                                "rate_factor, ED or BETA1",
-                                name, r->form.curve->name);
-    SF_TRY(check_rate_value(file, item, p, r, err));
-    return sf_parameter_read(file, group, p, &r->start[p], err);
-}
-
-static sf_status read_start(const sf_config *file, sf_config_item *root, sf_form_request *r, sf_error *err) {
-    sf_config_item *group = config_setting_get_member(root, "start");
-    if (group && !config_setting_is_group(group))
-        return sf_config_refuse(file, group, err, "start must be a group: start = { p0 = \"101 kPa\"; }");
-    for (int k = 0; group && k < config_setting_length(group); k++)
-        SF_TRY(read_value(file, group, config_setting_get_elem(group, (unsigned)k), r, err));
-    return SF_OK;
-}
-
-static void add_unknown(sf_form_request *r, sf_foam_parameter p) {
-    for (int k = 0; k < r->unknown_count; k++)
-        if (r->unknown[k] == p)
-            return;
-    r->unknown[r->unknown_count++] = p;
-}
-
-/* Reads the unknowns of the curve; unloading and rate have keys of their own. */
-static sf_status read_unknowns(const sf_config *file, sf_config_item *root, sf_form_request *r,
-                               sf_error *err) {
-    sf_config_item *list = config_setting_get_member(root, "unknown");
-    if (list && !config_setting_is_array(list) && !config_setting_is_list(list))
-        return sf_config_refuse(file, list, err, "unknown must be a list: unknown = ( \"E\", \"s0\" )");
-    if (list && config_setting_length(list) > SF_FORM_UNKNOWNS - 4)
-        return sf_config_refuse(file, list, err, "unknown has %d entries" SF_AT_MOST("%d"),
-                                config_setting_length(list), SF_FORM_UNKNOWNS - 4);
-    for (int k = 0; list && k < config_setting_length(list); k++) {
-        const char *name = config_setting_get_string_elem(list, k);
-        sf_foam_parameter p = name ? sf_parameter_find(name) : SF_PARAMETER_COUNT;
-        if (!is_of_curve(r, p))
-            return sf_config_refuse(file, list, err,
-                                    "unknown: \"%.80s\" is neither E nor a parameter of curve_form = \"%s\"",
-                                    name ? name : "(no text)", r->form.curve->name);
-        if (p == SF_PARAMETER_LOCKED)
-            sf_foam_form_start_lock(r->start);
-        add_unknown(r, p);
-    }
-    if (!list)
-        add_unknown(r, SF_PARAMETER_E);
-    for (int k = 0; !list && k < r->form.curve->entry_count; k++)
-        if (r->form.curve->entry[k].usual)
-            add_unknown(r, r->form.curve->entry[k].parameter);
-    return SF_OK;
-}
-
-/* At its pole the curve is infinite: no test can get there. */
-static sf_status check_pole(const sf_config *file, sf_config_item *root, int test_count,
-                            const sf_compression_test *test, const sf_form_request *r, sf_error *err) {
-    double pole = sf_curve_form_pole(r->form.curve, r->start);
-    for (int k = 0; k < test_count; k++)
-        if (!(test[k].largest_strain < pole))
-            return sf_config_refuse(
-                file, config_setting_get_member(root, "curve_form"), err,
-                "%s reaches a strain of %.3g, but with solid_fraction = %.3g%s the curve of "
-                "curve_form = \"%s\" ends at %.3g: it is too large",
-                test[k].path, test[k].largest_strain, r->start[SF_PARAMETER_SOLID_FRACTION],
-                r->start[SF_PARAMETER_LOCKED] > 0 ? " and locked_fraction" : "", r->form.curve->name, pole);
-    return SF_OK;
-}
-
-/* The rate up to which the curve holds as it is: below the fastest test, or the factor would be 1 in all. */
-static sf_status read_reference(const sf_config *file, sf_config_item *root, sf_compression_config *c,
-                                sf_error *err) {
-    sf_form_request *r = &c->form;
-    const sf_parameter_info *about = sf_parameter_get(SF_PARAMETER_RATE_REFERENCE);
-    sf_config_item *given = config_setting_get_member(root, about->name);
-    double *reference = &r->start[SF_PARAMETER_RATE_REFERENCE], fastest = c->test[c->test_count - 1].rate;
-    *reference = c->test[0].rate;
-    if (!given)
-        return SF_OK;
-    SF_TRY(check_rate_value(file, given, SF_PARAMETER_RATE_REFERENCE, r, err));
-    SF_TRY(sf_config_quantity(file, root, about->name, SF_RATE, false, about->low, reference, err));
-    if (!(*reference < fastest))
-        return sf_config_refuse(file, given, err,
-                                "rate_reference is %g 1/s, but the fastest test has %g 1/s: the rate factor "
-                                "would be 1 in every test; give a rate below it, or leave it out",
-                                *reference, fastest);
-    return SF_OK;
-}
-
-static sf_status read_form_rate(const sf_config *file, sf_config_item *root, sf_compression_config *c,
-                                sf_error *err) {
-    sf_form_request *r = &c->form;
-    int rate = SF_FORM_RATE_NONE;
-    const sf_compression_test *slowest = &c->test[0], *fastest = &c->test[c->test_count - 1];
-    SF_TRY(sf_config_choice(file, root, "rate_model", SF_FORM_RATE_WORDS, &rate, err));
-    r->rate = (sf_form_rate)rate;
-    bool factor = r->rate & SF_FORM_RATE_FACTOR, maxwell = r->rate & SF_FORM_RATE_MAXWELL;
-    if (r->rate != SF_FORM_RATE_NONE && fastest->rate < slowest->rate * (1 + 1e-6))
-        return sf_config_refuse(file, config_setting_get_member(root, "rate_model"), err,
-                                "the rate model \"%s\" needs tests at two rates; there is one rate",
-                                sf_form_rate_names[rate]);
-    SF_TRY(read_reference(file, root, c, err));
-    r->start[SF_PARAMETER_RATE_FACTOR] = 0;
-    r->start[SF_PARAMETER_ED] = maxwell ? 0.1 * fastest->largest_stress : 0;
-    r->start[SF_PARAMETER_BETA1] = maxwell ? sqrt(slowest->rate * fastest->rate) : 5000;
-    if (factor) {
-        sf_foam_form_start_rate(r->start);
-        r->form.base.rate_filter_time = r->start[SF_PARAMETER_RATE_FILTER_TIME] = FACTOR_FILTER_TIME;
-        if (!config_setting_get_member(root, "DAMP"))
-            r->form.base.damp = r->start[SF_PARAMETER_DAMP] = FACTOR_DAMP;
-        add_unknown(r, SF_PARAMETER_RATE_FACTOR);
-    }
-    if (maxwell) {
-        add_unknown(r, SF_PARAMETER_ED);
-        add_unknown(r, SF_PARAMETER_BETA1);
-    }
-    if (r->unknown_count == 0)
-        return sf_config_refuse(file, config_setting_get_member(root, "unknown"), err,
-                                "unknown is empty and rate_model is \"none\": there is nothing to fit");
-    return SF_OK;
-}
-
-/* Reads the keys of a form; the tests and the numbers of all laws are there. E begins as the slope of the
- * slowest test's first points, up to modulus_range. */
-static sf_status read_form(const sf_config *file, sf_config_item *root, sf_compression_config *c,
-                           sf_error *err) {
-    sf_form_request *r = &c->form;
-    const char *name = NULL;
-    SF_TRY(sf_config_text(file, root, "curve_form", true, &name, err));
-    *r = (sf_form_request){.form = {.curve = sf_curve_form_find(name),
-                                    .base = {.density = c->density,
-                                             .modulus = first_slope(&c->test[0], c->modulus_range),
-                                             .hysteresis_hu = 1,
-                                             .hysteresis_shape = 1,
-                                             .hysteresis_alpha = 1,
-                                             .damp = c->damp,
-                                             .maxwell_rate = 5000,
-                                             .tension_cutoff = 1e30,
-                                             .densification_limit = 1,
-                                             .rate_filter_time = FILTER_TIME}}};
-    SF_TRY(sf_foam_form_read_solid(file, root, &r->form, err));
-    sf_foam_form_start(&r->form, r->start);
-    SF_TRY(read_unknowns(file, root, r, err));
-    SF_TRY(read_form_rate(file, root, c, err));
-    SF_TRY(read_start(file, root, r, err));
-    SF_TRY(sf_foam_form_check_fraction(file, root, root, "curve_form", &r->form, r->unknown_count, r->unknown,
-                                       err));
-    SF_TRY(check_pole(file, root, c->test_count, c->test, r, err));
-    return check_pole(file, root, c->predicted_count, c->predicted, r, err);
-}
 
 /* ---- specimen and tests ---- */
 
@@ -328,22 +125,17 @@ sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entr
     return SF_OK;
 }
 
-/* Into the tests that are fitted, each rate once unless they are of several specimens, or those that are
- * predicted. */
-static sf_status read_test(const sf_config *file, sf_config_item *entry, bool predicted,
-                           sf_compression_config *c, sf_error *err) {
+static sf_status read_test(const sf_config *file, sf_config_item *entry, sf_compression_config *c,
+                           sf_error *err) {
     SF_OWNED_BY(sf_compression_test_free) sf_compression_test test = {0};
     sf_error inner = SF_ERROR_INIT;
     SF_OWNED char *path = NULL;
     sf_compression_source source = {.toe = c->toe};
     double temperature = 0;
-    const char *names =
-        c->specimens ? "file|" SF_COMPRESSION_SOURCE_KEYS : "file|temperature|" SF_COMPRESSION_SOURCE_KEYS;
-    SF_TRY(sf_config_names(file, entry, names, err));
+    SF_TRY(sf_config_names(file, entry, "file|temperature|" SF_COMPRESSION_SOURCE_KEYS, err));
     SF_TRY(sf_config_quantity(file, entry, "temperature", SF_TEMPERATURE, false, 0, &temperature, err));
     SF_TRY(sf_compression_source_read(file, entry, c->specimen, &source, err));
-    if (!c->specimens)
-        SF_TRY(check_rate(file, entry, source.rate, temperature, c, err));
+    SF_TRY(check_rate(file, entry, source.rate, temperature, c, err));
     SF_TRY(sf_config_file(file, entry, "file", true, &path, err));
     source.path = path;
     if (sf_compression_test_read(&source, &test, &inner) != SF_OK)
@@ -353,19 +145,18 @@ static sf_status read_test(const sf_config *file, sf_config_item *entry, bool pr
         return sf_config_refuse(file, entry, err, "temperature" SF_OUTSIDE("%g K", "100", "600 K"),
                                 temperature);
     test.temperature = temperature;
-    if (!predicted)
-        SF_TRY(check_points(file, entry, &test, c, err));
-    insert_test(predicted ? c->predicted : c->test, predicted ? &c->predicted_count : &c->test_count, &test);
+    SF_TRY(check_points(file, entry, &test, c, err));
+    insert_test(c->test, &c->test_count, &test);
     test = (sf_compression_test){0};
     return SF_OK;
 }
 
-static sf_status read_tests(const sf_config *file, sf_config_item *root, const char *name, bool predicted,
-                            sf_compression_config *c, sf_error *err) {
+static sf_status read_tests(const sf_config *file, sf_config_item *root, sf_compression_config *c,
+                            sf_error *err) {
     sf_config_item *tests;
-    SF_TRY(sf_config_list(file, root, name, !predicted, SF_COMPRESSION_TESTS, &tests, err));
-    for (int i = 0; tests && i < config_setting_length(tests) && err->status == SF_OK; i++)
-        read_test(file, config_setting_get_elem(tests, (unsigned)i), predicted, c, err);
+    SF_TRY(sf_config_list(file, root, "tests", true, SF_COMPRESSION_TESTS, &tests, err));
+    for (int i = 0; i < config_setting_length(tests) && err->status == SF_OK; i++)
+        read_test(file, config_setting_get_elem(tests, (unsigned)i), c, err);
     return err->status;
 }
 
@@ -404,47 +195,44 @@ static sf_status take_temperatures(const sf_config *file, sf_config_item *root, 
     return SF_OK;
 }
 
+/* Refuses the kinds of fits that the command softfall does. */
+static sf_status check_kind(const sf_config *file, sf_config_item *root, sf_error *err) {
+    static const char *const usual[][2] = {{"curve_form", "free"}, {"law", "low_density_foam"}};
+    for (int k = 0; k < 2; k++) {
+        const char *word = usual[k][1];
+        SF_TRY(sf_config_text(file, root, usual[k][0], false, &word, err));
+        if (strcmp(word, usual[k][1]) != 0)
+            return sf_config_refuse(file, config_setting_get_member(root, usual[k][0]), err,
+                                    "%s = \"%.80s\": this program fits a free curve; for forms, cycles and "
+                                    "hyperfoams use softfall fit compression %s -o DIR",
+                                    usual[k][0], word, file->path);
+    }
+    return SF_OK;
+}
+
 static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_error *err) {
     sf_config_item *root = config_root_setting(&file->config);
-    int model = SF_RATE_AUTO, rule = SF_RULE_AUTO, hyperfoam = 0;
-    bool form = false;
-    SF_TRY(sf_config_choice(file, root, "law", "low_density_foam|hyperfoam", &hyperfoam, err));
-    if (!hyperfoam)
-        SF_TRY(is_form_asked(file, root, &form, err));
-    SF_TRY(sf_config_names(
-        file, root,
-        hyperfoam ? SF_HYPERFOAM_REQUEST_KEYS
-        : form    ? "law|name|density|tests|DAMP|E_range|specimen|toe_correction|cycles|curve_form|"
-                    "solid_density|start|unknown|rate_model|rate_reference|predict"
-                  : "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
-                    "confidence|specimen|toe_correction|curve_form",
-        err));
+    int model = SF_RATE_AUTO, rule = SF_RULE_AUTO;
+    SF_TRY(check_kind(file, root, err));
+    SF_TRY(sf_config_names(file, root,
+                           "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
+                           "confidence|specimen|toe_correction|curve_form",
+                           err));
     SF_TRY(sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err));
     SF_TRY(read_name(file, root, c, err));
     SF_TRY(sf_config_number(file, root, "DAMP", false, 0, 10, &c->damp, err));
-    if (hyperfoam) {
-        sf_hyperfoam_request_read(file, root, &c->hyperfoam, &c->test[0], err);
-        c->test_count = 1;
-        return err->status;
-    }
     SF_TRY(sf_config_number(file, root, "E_range", false, 0.001, 0.2, &c->modulus_range, err));
     SF_TRY(sf_config_number(file, root, "confidence", false, 0.5, 0.9999, &c->confidence, err));
     SF_TRY(
         sf_config_number(file, root, "densification_start", false, 0.05, 0.98, &c->densification_start, err));
-    if (!form)
-        SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err));
+    SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err));
     SF_TRY(sf_config_choice(file, root, "densification", RULE_WORDS, &rule, err));
     SF_TRY(sf_config_flag(file, root, "toe_correction", &c->toe, err));
     SF_TRY(read_specimen(file, root, &c->specimen, err));
     c->rate_model = (sf_rate_model)model;
     c->rule = (sf_rule_choice)rule;
-    c->specimens = form;
-    SF_TRY(read_tests(file, root, "tests", false, c, err));
-    if (!form)
-        return take_temperatures(file, root, c, err);
-    SF_TRY(read_tests(file, root, "predict", true, c, err));
-    SF_TRY(sf_cycle_records_read(file, root, c, err));
-    return read_form(file, root, c, err);
+    SF_TRY(read_tests(file, root, c, err));
+    return take_temperatures(file, root, c, err);
 }
 
 /* ---- requirements on all tests together ---- */
@@ -480,8 +268,6 @@ static sf_status check_together(const char *path, const sf_compression_config *c
     double shortest = 1;
     int below = 0;
     SF_TRY(check_order_of_rates(c, err));
-    if (c->form.form.curve || c->hyperfoam.terms > 0)
-        return SF_OK; /* these need nothing of the tests together */
     for (int k = 0; k < c->test_count; k++)
         shortest = fmin(shortest, c->test[k].largest_strain);
     if (c->densification_start > 0.97 * shortest)
@@ -515,12 +301,7 @@ sf_status sf_compression_config_read(const char *path, sf_compression_config *co
 }
 
 void sf_compression_config_free(sf_compression_config *config) {
-    sf_hyperfoam_request_free(&config->hyperfoam);
-    for (int k = 0; k < SF_CYCLE_RECORDS; k++)
-        sf_cycle_record_free(&config->cycles[k]);
     for (int k = 0; k < config->test_count; k++)
         sf_compression_test_free(&config->test[k]);
-    for (int k = 0; k < config->predicted_count; k++)
-        sf_compression_test_free(&config->predicted[k]);
     *config = (sf_compression_config){0};
 }

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The joint fit of all tests: weighted least squares of point_model.h (GSL, Levenberg-Marquardt), loading
+/* The joint fit of all tests: weighted least squares of compression_model.h (GSL, Levenberg-Marquardt), loading
  * first and then unloading given the loading, the
  * choice of rate dependence and densification by BIC, and the 95 % interval of every number. */
 #pragma once
-#include "study/fit/compression/compression_kind.h"
-#include "study/fit/compression/point_model.h"
-#include <gsl/gsl_vector.h>
+#include "study/fit/compression/compression_model.h"
+#include "study/fit/form/form.h"
 
-enum { SF_COMPRESSION_TABLE = 60 };
+enum {
+    SF_COMPRESSION_TABLE = 60,
+    SF_COMPRESSION_PARAMETERS = SF_COMPRESSION_TESTS * SF_SPLINE_COEFFICIENTS + SF_NUMBERS
+};
 
 typedef enum sf_estimate_name {
     SF_ESTIMATE_E,        /* Pa */
@@ -75,52 +77,14 @@ typedef struct sf_compression_fit {
 sf_status sf_compression_fit_run(const sf_compression_config *config, sf_compression_fit *fit, sf_error *err);
 void sf_compression_fit_free(sf_compression_fit *fit);
 
-/* Standard error of a quantity with this gradient [model.parameter_count] by the parameters. */
-double sf_compression_error(const sf_compression_fit *fit, const double *gradient);
+/* A function of the parameters, of a number or a test and a strain. */
+typedef double sf_compression_quantity(const sf_compression_model *model, const gsl_vector *parameters,
+                                       int which, double at);
+/* Standard error of a quantity; moves the parameters and puts them back. */
+double sf_compression_error(const sf_compression_fit *fit, sf_compression_quantity *quantity, int which,
+                            double at);
 
 /* The foam card of the fit, whose curves have the temperature (K) in place of the rate where the tests have
  * one; released by the caller with sf_foam_card_free. */
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err);
 
-/* The result of the fit of tables: the fit, its card in the solver's own law, and how both stand against the
- * data. table_report.c makes the page of it. */
-
-/* A test against the fit. */
-typedef struct sf_table_test {
-    sf_compression_test test; /* its arrays are the configuration's */
-    const char *name;         /* the file without its folders; borrowed */
-    int unloading;            /* points */
-    double rms[2];            /* of deviation over sigma, loading and unloading; NaN: no such branch */
-    double percent[2]; /* root mean square of deviation, % of the stress, counted as one hundredth of the
-                          largest at least */
-    double speed_up, difference[2], energy_error; /* of the simulated test */
-} sf_table_test;
-
-typedef struct sf_table_result {
-    sf_compression_fit fit;
-    sf_foam_card card;   /* of the fit; owned */
-    double card_percent; /* largest difference of card and fit, counted as `percent` */
-    int test_count;
-    sf_table_test test[SF_COMPRESSION_TESTS];
-    bool simulated;
-} sf_table_result;
-
-/* Rows of an sf_table_test: all, and those of the simulated test. */
-sf_rows sf_table_test_rows(const sf_table_result *result);
-extern const sf_rows sf_table_simulation_rows;
-
-/* Phrases of the rate dependence and of sf_rule. */
-const char *sf_table_rate_words(const sf_compression_fit *fit);
-extern const char *const sf_table_rules[SF_RULES];
-
-/* An estimate as a reader sees it. */
-typedef struct sf_table_estimate {
-    char value[64], error[64], interval[140];
-} sf_table_estimate;
-sf_table_estimate sf_table_estimate_of(const sf_estimate *estimate);
-/* "rms deviation ...: how well a side is fitted. Returns `text`. */
-const char *sf_table_misfit(const sf_side *side, char text[160]);
-
-/* fit.gp, fit.png and report.html. */
-sf_status sf_table_report_write(const struct sf_study *study, const sf_table_result *result, char *warning,
-                                size_t size, sf_error *err);

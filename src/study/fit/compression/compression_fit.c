@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/compression/table_fit.h"
+#include "study/fit/compression/compression_fit.h"
 
 #include "study/fit/least_squares.h"
 #include <gsl/gsl_blas.h>
@@ -11,6 +11,7 @@
 static const char AT_BOUND[] = "at the bound of the search: not identified by these tests";
 enum { ITERATIONS = 150, MAXWELL_STARTS = 4 };
 static const double STEP_TOLERANCE = 1e-7, GRADIENT_TOLERANCE = 1e-9;
+static const double DIFFERENCE = 6e-6; /* of derivatives, by the parameter */
 static const double RANK_TOLERANCE = 1e-7; /* columns of the Jacobian below it do not bear on the data */
 
 /* ---- one search ---- */
@@ -23,7 +24,6 @@ typedef struct problem {
     gsl_vector *all;     /* every parameter */
     gsl_vector_view own; /* those of the side, which are searched */
     double *stress;      /* scratch */
-    gsl_matrix *change; /* [points][all parameters], scratch */
 } problem;
 
 static size_t first_of(const sf_compression_model *model, bool unloading) {
@@ -45,26 +45,10 @@ static int deviations(const gsl_vector *x, void *context, gsl_vector *out) {
     problem *p = context;
     const sf_compression_data *d = p->model->data;
     gsl_vector_memcpy(&p->own.vector, x);
-    sf_compression_predict(p->model, p->all, p->stress, NULL);
+    sf_compression_predict(p->model, p->all, p->unloading, p->stress);
     for (int i = 0, k = 0; i < d->count; i++)
         if (d->unloading[i] == p->unloading)
             gsl_vector_set(out, (size_t)k++, (p->stress[i] - d->stress[i]) / d->sigma[i]);
-    return GSL_SUCCESS;
-}
-
-static int derivatives(const gsl_vector *x, void *context, gsl_matrix *out) {
-    problem *p = context;
-    const sf_compression_data *d = p->model->data;
-    const size_t first = first_of(p->model, p->unloading);
-    gsl_vector_memcpy(&p->own.vector, x);
-    sf_compression_predict(p->model, p->all, p->stress, p->change);
-    for (int i = 0, k = 0; i < d->count; i++)
-        if (d->unloading[i] == p->unloading) {
-            for (size_t j = 0; j < out->size2; j++)
-                gsl_matrix_set(out, (size_t)k, j,
-                               gsl_matrix_get(p->change, (size_t)i, first + j) / d->sigma[i]);
-            k++;
-        }
     return GSL_SUCCESS;
 }
 
@@ -74,14 +58,14 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
                      sf_error *err) {
     size_t n = (size_t)points_of(model->data, unloading), p = count_of(model, unloading);
     SF_OWNED double *stress = sf_alloc(err, model->data->count, sizeof *stress, "stresses");
-    SF_MATRIX *change = sf_matrix((size_t)model->data->count, x->size, err);
-    problem context = {model,  unloading, x, gsl_vector_subvector(x, first_of(model, unloading), p),
-                       stress, change};
-    gsl_multifit_nlinear_fdf fdf = {.f = deviations, .df = derivatives, .n = n, .p = p, .params = &context};
+    problem context = {model, unloading, x, gsl_vector_subvector(x, first_of(model, unloading), p), stress};
+    gsl_multifit_nlinear_fdf fdf = {.f = deviations, .n = n, .p = p, .params = &context};
     gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
     how.solver = gsl_multifit_nlinear_solver_cholesky;
     how.scale =
         gsl_multifit_nlinear_scale_levenberg; /* parameters are logarithms: a flat one stays where it is */
+    how.fdtype = GSL_MULTIFIT_NLINEAR_CTRDIFF;
+    how.h_df = DIFFERENCE;
     gsl_multifit_nlinear_workspace *w =
         n > p ? gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, n, p) : NULL;
     SF_VECTOR *start = sf_vector(p, err);
@@ -94,7 +78,7 @@ static double search(const sf_compression_model *model, bool unloading, gsl_vect
         if (gsl_multifit_nlinear_init(start, &fdf, w) == GSL_SUCCESS) {
             gsl_multifit_nlinear_driver(ITERATIONS, STEP_TOLERANCE, GRADIENT_TOLERANCE, 0, NULL, NULL, &info,
                                         w);
-            gsl_blas_ddot(gsl_multifit_nlinear_residual(w), gsl_multifit_nlinear_residual(w), &chi2);
+            chi2 = pow(gsl_blas_dnrm2(gsl_multifit_nlinear_residual(w)), 2);
             gsl_vector_memcpy(&context.own.vector, isfinite(chi2) ? gsl_multifit_nlinear_position(w) : start);
             if (covariance)
                 gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(w), RANK_TOLERANCE, covariance);
@@ -181,13 +165,31 @@ static double neighbour_correlation(const sf_compression_fit *fit, bool unloadin
     return square > 0 ? product / square : 0;
 }
 
-double sf_compression_error(const sf_compression_fit *fit, const double *gradient) {
-    size_t p = (size_t)fit->model.parameter_count;
-    double variance = 0;
+double sf_compression_error(const sf_compression_fit *fit, sf_compression_quantity *quantity, int which,
+                            double at) {
+    size_t p = fit->parameters->size;
+    double gradient[SF_COMPRESSION_PARAMETERS], variance = 0;
+    for (size_t i = 0; i < p; i++) {
+        double value = gsl_vector_get(fit->parameters, i), h = DIFFERENCE * fmax(1, fabs(value)), side[2];
+        for (int k = 0; k < 2; k++) {
+            gsl_vector_set(fit->parameters, i, value + (k ? h : -h));
+            side[k] = quantity(&fit->model, fit->parameters, which, at);
+        }
+        gsl_vector_set(fit->parameters, i, value);
+        gradient[i] = (side[1] - side[0]) / (2 * h);
+    }
     for (size_t i = 0; i < p; i++)
         for (size_t j = 0; j < p; j++)
             variance += gradient[i] * gradient[j] * gsl_matrix_get(fit->covariance, i, j);
     return sqrt(fmax(0, variance));
+}
+
+static double number_of(const sf_compression_model *model, const gsl_vector *x, int which, double at) {
+    return (void)at, sf_compression_number(model, x, (sf_number)which);
+}
+
+static double exponent_of(const sf_compression_model *model, const gsl_vector *x, int which, double at) {
+    return (void)which, (void)at, sf_compression_exponent(model, x);
 }
 
 /* Interval of value +- t error, or of its logarithm for a number that has no zero. */
@@ -208,17 +210,15 @@ static void set_interval(const sf_compression_fit *fit, bool logarithmic, double
 static void estimate_number(const sf_compression_fit *fit, sf_number number, bool logarithmic,
                             sf_estimate *e) {
     const sf_number_range *r = &fit->model.range[number];
-    double slope = 0;
     e->present = r->index >= 0;
-    e->value = sf_compression_number(&fit->model, fit->parameters, number, &slope);
+    e->value = sf_compression_number(&fit->model, fit->parameters, number);
     if (!e->present)
         return;
-    double variance = gsl_matrix_get(fit->covariance, (size_t)r->index, (size_t)r->index),
-           part = r->logarithmic ? log(e->value / r->low) / log(r->high / r->low)
+    double part = r->logarithmic ? log(e->value / r->low) / log(r->high / r->low)
                                  : (e->value - r->low) / (r->high - r->low);
-    e->error = slope * sqrt(variance);
+    e->error = sf_compression_error(fit, number_of, (int)number, 0);
     bool at_bound = isfinite(r->high) && (part < 1e-4 || part > 1 - 1e-4);
-    if (at_bound || !(variance > 0)) {
+    if (at_bound || !(e->error > 0)) {
         e->note = at_bound ? AT_BOUND : "not identified by these tests";
         e->error = NAN;
     }
@@ -229,11 +229,10 @@ static void estimate_number(const sf_compression_fit *fit, sf_number number, boo
         e->note = "not distinguishable from zero by these tests";
 }
 
-static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e, sf_error *err) {
-    SF_OWN(double, gradient, fit->model.parameter_count, "parameter gradients", err);
+static void estimate_exponent(const sf_compression_fit *fit, sf_estimate *e) {
     e->present = true;
-    e->value = sf_compression_exponent(&fit->model, fit->parameters, gradient);
-    e->error = sf_compression_error(fit, gradient);
+    e->value = sf_compression_exponent(&fit->model, fit->parameters);
+    e->error = sf_compression_error(fit, exponent_of, 0, 0);
     set_interval(fit, true, 0, INFINITY, e);
     bool follows = fit->model.form.rule == SF_H1_AUTO;
     if (!follows && (!(e->error > 0) || e->value > 59.9 || e->value < 0.0501)) {
@@ -245,7 +244,6 @@ static sf_status estimate_exponent(const sf_compression_fit *fit, sf_estimate *e
             "for strains beyond theirs";
     else if (follows)
         e->note = "follows from value and slope where densification starts (A = 0)";
-    return SF_OK;
 }
 
 /* Slope of the line through the loading of one test, the slowest, below the strain E_range. Its variance is
@@ -266,7 +264,7 @@ static void estimate_modulus(const sf_compression_fit *fit, sf_estimate *e) {
         e->note = "not distinguishable from zero by these tests";
 }
 
-static sf_status estimate_all(sf_compression_fit *fit, sf_error *err) {
+static void estimate_all(sf_compression_fit *fit) {
     static const struct {
         const char *name, *key, *unit;
         int number; /* sf_number; -1: found otherwise */
@@ -294,7 +292,7 @@ static sf_status estimate_all(sf_compression_fit *fit, sf_error *err) {
             fit->estimate[k].present = true;
             fit->estimate[k].note = "not measured: no test unloads; 1 means no hysteresis";
         }
-    return estimate_exponent(fit, &fit->estimate[SF_ESTIMATE_EXPONENT], err);
+    estimate_exponent(fit, &fit->estimate[SF_ESTIMATE_EXPONENT]);
 }
 
 /* Strains of the table, graded as the knots, and three close together where densification starts, from whose
@@ -315,18 +313,16 @@ static void place_table(sf_compression_fit *fit) {
     }
 }
 
-static sf_status fill_table(sf_compression_fit *fit, sf_error *err) {
-    SF_OWN(double, gradient, fit->model.parameter_count, "parameter gradients", err);
+static void fill_table(sf_compression_fit *fit) {
     sf_rate_model rate = fit->model.form.rate;
     fit->rate_count = rate == SF_RATE_LOG || rate == SF_RATE_CURVES ? fit->data.config->test_count : 1;
     place_table(fit);
     for (int r = 0; r < fit->rate_count; r++)
         for (int k = 0; k < fit->table_count; k++) {
-            fit->table_stress[r][k] =
-                sf_compression_curve(&fit->model, fit->parameters, r, fit->table_strain[k], gradient);
-            fit->table_error[r][k] = sf_compression_error(fit, gradient);
+            double strain = fit->table_strain[k];
+            fit->table_stress[r][k] = sf_compression_curve(&fit->model, fit->parameters, r, strain);
+            fit->table_error[r][k] = sf_compression_error(fit, sf_compression_curve, r, strain);
         }
-    return SF_OK;
 }
 
 /* Root mean square of the deviations of a side, over the stress and over the largest stress of all tests. */
@@ -391,66 +387,73 @@ static sf_status try_alpha(sf_compression_fit *fit, sf_error *err) {
     return err->status;
 }
 
+/* Derivatives of the deviations of unloading by all parameters: [points][parameters]. */
+static sf_status differentiate(sf_compression_fit *fit, gsl_matrix *out, sf_error *err) {
+    const sf_compression_data *d = &fit->data;
+    SF_OWN(double, side, 2 * d->count, "stresses", err);
+    for (size_t j = 0; j < out->size2; j++) {
+        double value = gsl_vector_get(fit->parameters, j), h = DIFFERENCE * fmax(1, fabs(value));
+        for (int k = 0; k < 2; k++) {
+            gsl_vector_set(fit->parameters, j, value + (k ? h : -h));
+            sf_compression_predict(&fit->model, fit->parameters, true, &side[k * d->count]);
+        }
+        gsl_vector_set(fit->parameters, j, value);
+        for (int i = 0, row = 0; i < d->count; i++)
+            if (d->unloading[i])
+                gsl_matrix_set(out, (size_t)row++, j, (side[d->count + i] - side[i]) / (2 * h * d->sigma[i]));
+    }
+    return SF_OK;
+}
+
 /* The unloading was found for the loading's parameters, whose uncertainty it inherits: with J1 and J2 the
  * derivatives of its deviations by both, x2 moves by G = -(J2'J2)^-1 J2'J1 for a unit of x1. */
-static sf_status join_covariances(sf_compression_fit *fit, const gsl_matrix *loading,
-                                  const gsl_matrix *unloading, sf_error *err) {
-    const sf_compression_data *d = &fit->data;
-    const size_t p1 = count_of(&fit->model, false), p2 = count_of(&fit->model, true), n = (size_t)d->count;
-    SF_MATRIX *change = sf_matrix(n, p1 + p2, err), *cross = sf_matrix(p2, p1, err),
-              *g = sf_matrix(p2, p1, err), *gc = sf_matrix(p2, p1, err);
+static sf_status join_covariances(sf_compression_fit *fit, const gsl_matrix *unloading, sf_error *err) {
+    const size_t p1 = count_of(&fit->model, false), p2 = count_of(&fit->model, true),
+                 n = (size_t)points_of(&fit->data, true);
+    SF_MATRIX *change = sf_matrix(n, p1 + p2, err), *cross = sf_matrix(p2, p1, err), *g = sf_matrix(p2, p1, err);
     gsl_matrix_view c11 = gsl_matrix_submatrix(fit->covariance, 0, 0, p1, p1),
                     c21 = gsl_matrix_submatrix(fit->covariance, p1, 0, p2, p1),
                     c12 = gsl_matrix_submatrix(fit->covariance, 0, p1, p1, p2),
                     c22 = gsl_matrix_submatrix(fit->covariance, p1, p1, p2, p2);
     SF_TRY(err->status);
-    sf_compression_predict(&fit->model, fit->parameters, fit->stress, change);
-    for (size_t i = 0; i < n; i++) {
-        gsl_vector_view row = gsl_matrix_row(change, i);
-        gsl_vector_scale(&row.vector, d->unloading[i] ? 1 / d->sigma[i] : 0);
-    }
+    SF_TRY(differentiate(fit, change, err));
     gsl_matrix_view j1 = gsl_matrix_submatrix(change, 0, 0, n, p1),
                     j2 = gsl_matrix_submatrix(change, 0, p1, n, p2);
     gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, &j2.matrix, &j1.matrix, 0, cross);
     gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, -1, unloading, cross, 0, g);
-    gsl_matrix_memcpy(&c11.matrix, loading);
-    gsl_matrix_scale(&c11.matrix, fit->side[0].factor * fit->side[0].serial);
     gsl_matrix_memcpy(&c22.matrix, unloading);
     gsl_matrix_scale(&c22.matrix, fit->side[1].factor * fit->side[1].serial);
-    gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, g, &c11.matrix, 0, gc);
-    gsl_blas_dgemm(CblasNoTrans, CblasTrans, 1, gc, g, 1, &c22.matrix);
-    gsl_matrix_memcpy(&c21.matrix, gc);
-    gsl_matrix_transpose_memcpy(&c12.matrix, gc);
+    gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, g, &c11.matrix, 0, &c21.matrix);
+    gsl_blas_dgemm(CblasNoTrans, CblasTrans, 1, &c21.matrix, g, 1, &c22.matrix);
+    gsl_matrix_transpose_memcpy(&c12.matrix, &c21.matrix);
     return err->status;
 }
 
 /* Both sides again with their covariances, at the minimum. */
 static sf_status find_errors(sf_compression_fit *fit, sf_error *err) {
-    const size_t p1 = count_of(&fit->model, false), p2 = count_of(&fit->model, true), p = p1 + p2;
-    SF_MATRIX *loading = sf_matrix(p1, p1, err), *unloading = p2 > 0 ? sf_matrix(p2, p2, err) : NULL;
-    fit->covariance = sf_matrix(p, p, err);
-    for (int k = 0; k < (p2 > 0 ? 2 : 1) && err->status == SF_OK; k++) {
+    const size_t p[2] = {count_of(&fit->model, false), count_of(&fit->model, true)};
+    SF_MATRIX *loading = sf_matrix(p[0], p[0], err), *unloading = p[1] > 0 ? sf_matrix(p[1], p[1], err) : NULL;
+    fit->covariance = sf_matrix(p[0] + p[1], p[0] + p[1], err);
+    for (int k = 0; k < (p[1] > 0 ? 2 : 1) && err->status == SF_OK; k++) {
         sf_side *side = &fit->side[k];
         side->points = points_of(&fit->data, k == 1);
         side->chi2 = search(&fit->model, k == 1, fit->parameters, k ? unloading : loading, err);
-        side->factor = side->chi2 / ((double)side->points - (double)count_of(&fit->model, k == 1));
+        side->factor = side->chi2 / ((double)side->points - (double)p[k]);
         side->misfit = fmax(side->misfit, side->factor);
     }
-    sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
     for (int k = 0; k < 2; k++) {
         /* deviations that hang together count for fewer points: (1 + r)/(1 - r) for the variance of a mean */
         sf_side *side = &fit->side[k];
+        sf_compression_predict(&fit->model, fit->parameters, k == 1, fit->stress);
         side->correlation = neighbour_correlation(fit, k == 1);
         double r = fmin(0.98, side->correlation);
         side->serial = r > 2 / sqrt(side->points) ? (1 + r) / (1 - r) : 1;
     }
-    if (err->status == SF_OK && p2 > 0) {
-        join_covariances(fit, loading, unloading, err);
-    } else if (err->status == SF_OK) {
-        gsl_matrix_memcpy(fit->covariance, loading);
-        gsl_matrix_scale(fit->covariance, fit->side[0].factor * fit->side[0].serial);
-    }
-    return err->status;
+    SF_TRY(err->status);
+    gsl_matrix_view c11 = gsl_matrix_submatrix(fit->covariance, 0, 0, p[0], p[0]);
+    gsl_matrix_memcpy(&c11.matrix, loading);
+    gsl_matrix_scale(&c11.matrix, fit->side[0].factor * fit->side[0].serial);
+    return p[1] > 0 ? join_covariances(fit, unloading, err) : SF_OK;
 }
 
 /* If the law misses the unloading by far more than the scatter, the scatter is not what tells how much a
@@ -464,7 +467,7 @@ static sf_status weigh_by_law(sf_compression_fit *fit, sf_error *err) {
     side->misfit = side->chi2 / ((double)side->points - (double)count_of(&fit->model, true));
     if (!(side->misfit > FAR))
         return SF_OK;
-    sf_compression_predict(&fit->model, fit->parameters, fit->stress, NULL);
+    sf_compression_predict(&fit->model, fit->parameters, true, fit->stress);
     measure_side(fit, true, side);
     side->law_error = side->of_largest;
     for (int i = 0; i < d->count; i++)
@@ -504,8 +507,9 @@ static sf_status finish(sf_compression_fit *fit, sf_error *err) {
     if (!unloads)
         fit->side[1].misfit = fit->side[1].of_largest = NAN;
     fit->quantile = gsl_cdf_tdist_Pinv(0.5 + 0.5 * c->confidence, left / fit->side[0].serial);
-    SF_TRY(estimate_all(fit, err));
-    return fill_table(fit, err);
+    estimate_all(fit);
+    fill_table(fit);
+    return SF_OK;
 }
 
 sf_status sf_compression_fit_run(const sf_compression_config *config, sf_compression_fit *fit,

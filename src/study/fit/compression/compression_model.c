@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "study/fit/compression/point_model.h"
+#include "study/fit/compression/compression_model.h"
 
 #include "material/low_density_foam.h"
 
@@ -90,29 +90,13 @@ typedef struct numbers {
     double value[SF_NUMBERS];
 } numbers;
 
-/* Stress and energy of a curve at one strain, with gradients by its coefficients and by exponent and limit.
- */
-typedef struct ordinate {
-    double stress, energy;
-    double stress_by[SF_SPLINE_COEFFICIENTS], energy_by[SF_SPLINE_COEFFICIENTS];
-    double stress_by_exponent, stress_by_limit, energy_by_exponent, energy_by_limit;
-} ordinate;
-
 /* ---- parameters ---- */
 
-static double from_real(const sf_number_range *r, double x, double *slope) {
-    if (isinf(r->high)) {
-        *slope = 1;
+static double from_real(const sf_number_range *r, double x) {
+    double part = 1 / (1 + exp(-fmax(-30, fmin(30, x))));
+    if (isinf(r->high))
         return x;
-    }
-    double part = 1 / (1 + exp(-fmax(-30, fmin(30, x)))), change = part * (1 - part);
-    if (!r->logarithmic) {
-        *slope = (r->high - r->low) * change;
-        return r->low + (r->high - r->low) * part;
-    }
-    double value = r->low * pow(r->high / r->low, part);
-    *slope = value * log(r->high / r->low) * change;
-    return value;
+    return r->logarithmic ? r->low * pow(r->high / r->low, part) : r->low + (r->high - r->low) * part;
 }
 
 static double to_real(const sf_number_range *r, double value) {
@@ -125,12 +109,9 @@ static double to_real(const sf_number_range *r, double value) {
 }
 
 double sf_compression_number(const sf_compression_model *model, const gsl_vector *parameters,
-                             sf_number number, double *slope) {
+                             sf_number number) {
     const sf_number_range *r = &model->range[number];
-    double ignored;
-    return r->index < 0
-               ? r->fixed
-               : from_real(r, gsl_vector_get(parameters, (size_t)r->index), slope ? slope : &ignored);
+    return r->index < 0 ? r->fixed : from_real(r, gsl_vector_get(parameters, (size_t)r->index));
 }
 
 static void unpack(const sf_compression_model *model, const gsl_vector *parameters, numbers *n) {
@@ -142,18 +123,10 @@ static void unpack(const sf_compression_model *model, const gsl_vector *paramete
                 n->coefficient[c][j] + exp(gsl_vector_get(parameters, (size_t)(c * per_curve + j)));
     }
     for (int k = 0; k < SF_NUMBERS; k++)
-        n->value[k] = sf_compression_number(model, parameters, (sf_number)k, NULL);
+        n->value[k] = sf_compression_number(model, parameters, (sf_number)k);
 }
 
 /* ---- the curve and its densification ---- */
-
-/* The densification for a unit slope at its start and no stress or energy there, by which stress = s + s' D,
- * energy = W + s (strain - start) + s' (integral of D): out = {D, its integral}. */
-static void densification(double start, double exponent, double limit, double strain, double out[2]) {
-    const sf_densification unit = sf_densification_join(start, limit, exponent, 0, 1, 0);
-    double slope;
-    sf_densification_evaluate(&unit, strain, &out[0], &slope, &out[1]);
-}
 
 static double product(int count, const double *row, const double *coefficient) {
     double sum = 0;
@@ -162,61 +135,34 @@ static double product(int count, const double *row, const double *coefficient) {
     return sum;
 }
 
-/* The exponent that makes A vanish, m = room s'/s, and its gradient by the coefficients. */
-static double natural_exponent(const sf_compression_model *model, const double *c, double *by) {
-    int n = model->spline.count;
-    double room = 1 - model->data->start, s = product(n, model->start_row[0], c),
-           d = product(n, model->start_row[1], c);
-    for (int j = 0; j < n && by; j++)
-        by[j] = room * (model->start_row[1][j] / s - d * model->start_row[0][j] / (s * s));
-    return sf_densification_natural_exponent(model->data->start, 1, s, d);
-}
-
-static void evaluate_beyond(const sf_compression_model *model, const double *c, double exponent, double limit,
-                            double strain, ordinate *o) {
-    int n = model->spline.count;
-    const double(*row)[SF_SPLINE_COEFFICIENTS] = model->start_row;
-    double start = model->data->start, h = 1e-5, by[SF_SPLINE_COEFFICIENTS] = {0}, d[2], up[2], down[2];
-    bool automatic = model->form.rule == SF_H1_AUTO;
-    if (automatic)
-        exponent = natural_exponent(model, c, by);
-    densification(start, exponent, limit, strain, d);
-    double s = product(n, row[0], c), slope = product(n, row[1], c), width = strain - start;
-    o->stress = s + slope * d[0];
-    o->energy = product(n, row[2], c) + s * width + slope * d[1];
-    densification(start, exponent * (1 + h), limit, strain, up);
-    densification(start, exponent * (1 - h), limit, strain, down);
-    o->stress_by_exponent = slope * (up[0] - down[0]) / (2 * h * exponent);
-    o->energy_by_exponent = slope * (up[1] - down[1]) / (2 * h * exponent);
-    h *= limit - strain;
-    densification(start, exponent, limit + h, strain, up);
-    densification(start, exponent, limit - h, strain, down);
-    o->stress_by_limit = slope * (up[0] - down[0]) / (2 * h);
-    o->energy_by_limit = slope * (up[1] - down[1]) / (2 * h);
-    for (int j = 0; j < n; j++) {
-        o->stress_by[j] = row[0][j] + row[1][j] * d[0] + o->stress_by_exponent * by[j];
-        o->energy_by[j] = row[2][j] + row[0][j] * width + row[1][j] * d[1] + o->energy_by_exponent * by[j];
-    }
-    if (automatic)
-        o->stress_by_exponent = o->energy_by_exponent = 0;
-}
-
-/* `area` may be NULL where no energy is wanted. */
-static void evaluate(const sf_compression_model *model, const double *c, const numbers *n, double strain,
-                     const double *value, const double *area, ordinate *o) {
+static double exponent_of(const sf_compression_model *model, const double *c, const numbers *n) {
     int count = model->spline.count;
-    if (strain > model->data->start) {
-        evaluate_beyond(model, c, n->value[SF_NUMBER_EXPONENT], n->value[SF_NUMBER_LIMIT], strain, o);
-        return;
-    }
-    o->stress = product(count, value, c);
-    memcpy(o->stress_by, value, (size_t)count * sizeof *value);
-    o->stress_by_exponent = o->stress_by_limit = o->energy_by_exponent = o->energy_by_limit = 0;
-    if (area) {
-        o->energy = product(count, area, c);
-        memcpy(o->energy_by, area, (size_t)count * sizeof *area);
-    }
+    return model->form.rule != SF_H1_AUTO ? n->value[SF_NUMBER_EXPONENT]
+                                          : sf_densification_natural_exponent(
+                                                model->data->start, 1, product(count, model->start_row[0], c),
+                                                product(count, model->start_row[1], c));
 }
+
+/* Stress (Pa) of a curve; `area` NULL: no energy is wanted. */
+static double evaluate(const sf_compression_model *model, int curve, const numbers *n, double strain,
+                       const double *value, const double *area, double *energy) {
+    const double *c = n->coefficient[curve];
+    int count = model->spline.count;
+    double start = model->data->start, stress, slope, unused;
+    if (!(strain > start)) {
+        if (area)
+            *energy = product(count, area, c);
+        return product(count, value, c);
+    }
+    const sf_densification beyond =
+        sf_densification_join(start, n->value[SF_NUMBER_LIMIT], exponent_of(model, c, n),
+                              product(count, model->start_row[0], c), product(count, model->start_row[1], c),
+                              product(count, model->start_row[2], c));
+    sf_densification_evaluate(&beyond, strain, &stress, &slope, area ? energy : &unused);
+    return stress;
+}
+
+/* ---- the Maxwell branch ---- */
 
 /* Takes `held` (Pa, second Piola-Kirchhoff stress of a branch of 1 Pa) from one strain to another at a
  * constant rate, by steps of the law. */
@@ -243,157 +189,77 @@ double sf_compression_maxwell(double decay_rate, double rate, double turn, doubl
     return -(1 - strain) * walk->held;
 }
 
-/* ---- derivatives into the parameter vector ---- */
+/* ---- prediction ---- */
 
-/* Adds `factor` times a gradient by the coefficients of a curve: an increment raises all coefficients after
- * it, and is its own derivative by its logarithm. */
-static void add_coefficients(const sf_compression_model *model, const numbers *n, int curve, const double *by,
-                             double factor, double *gradient) {
-    int per_curve = model->spline.count - 1;
-    const double *c = n->coefficient[curve];
-    double sum = 0;
-    for (int j = per_curve - 1; j >= 0; j--) {
-        sum += by[j + 1];
-        gradient[curve * per_curve + j] += factor * sum * (c[j + 1] - c[j]);
-    }
-}
-
-static void add_number(const sf_compression_model *model, const gsl_vector *parameters, sf_number number,
-                       double by, double *gradient) {
-    double slope = 0;
-    if (model->range[number].index < 0)
-        return;
-    sf_compression_number(model, parameters, number, &slope);
-    gradient[model->range[number].index] += by * slope;
-}
-
-static void add_densification(const sf_compression_model *model, const gsl_vector *parameters,
-                              double by_exponent, double by_limit, double *gradient) {
-    add_number(model, parameters, SF_NUMBER_EXPONENT, by_exponent, gradient);
-    add_number(model, parameters, SF_NUMBER_LIMIT, by_limit, gradient);
-}
-
-/* Walks along a test with three decay rates: the one wanted, and one on either side for its derivative. */
-typedef struct branch {
-    int test;
-    sf_compression_walk walk[3];
-} branch;
-
-static double predict_maxwell(const sf_compression_model *model, const gsl_vector *parameters,
-                              const numbers *n, int i, branch *m, double *gradient) {
-    const sf_compression_data *d = model->data;
-    const sf_compression_test *t = &d->config->test[d->test[i]];
-    double modulus = n->value[SF_NUMBER_ED], beta = n->value[SF_NUMBER_BETA1], h = 1e-5, unit[3] = {0};
-    const double rate[3] = {beta, beta * (1 + h), beta * (1 - h)};
-    if (m->test != d->test[i])
-        *m = (branch){.test = d->test[i]};
-    for (int k = 0; k < (gradient ? 3 : 1); k++)
-        unit[k] = sf_compression_maxwell(rate[k], t->rate, t->largest_strain, d->strain[i], d->unloading[i],
-                                         &m->walk[k]);
-    if (gradient) {
-        add_number(model, parameters, SF_NUMBER_ED, unit[0], gradient);
-        add_number(model, parameters, SF_NUMBER_BETA1, modulus * (unit[1] - unit[2]) / (2 * h * beta),
-                   gradient);
-    }
-    return modulus * unit[0];
-}
-
-/* Stress of loading at the rate of a test; `row`: of the spline at this strain. Adds to `gradient` or NULL.
- */
-static double loading_stress(const sf_compression_model *model, const gsl_vector *parameters,
-                             const numbers *n, int test, double strain, const double *row, double *gradient) {
-    int curve = model->curve_count > 1 ? test : 0;
+/* Stress of loading at the rate of a test; `row`: of the spline at this strain. */
+static double loading_stress(const sf_compression_model *model, const numbers *n, int test, double strain,
+                             const double *row) {
     const sf_compression_test *t = model->data->config->test;
-    double logarithm = model->form.rate == SF_RATE_LOG ? log(t[test].rate / t[0].rate) : 0,
-           factor = 1 + n->value[SF_NUMBER_LOG_RATE] * logarithm;
-    ordinate o;
-    evaluate(model, n->coefficient[curve], n, strain, row, NULL, &o);
-    if (gradient) {
-        add_coefficients(model, n, curve, o.stress_by, factor, gradient);
-        add_densification(model, parameters, factor * o.stress_by_exponent, factor * o.stress_by_limit,
-                          gradient);
-        add_number(model, parameters, SF_NUMBER_LOG_RATE, logarithm * o.stress, gradient);
-    }
-    return factor * o.stress;
+    double factor = model->form.rate == SF_RATE_LOG
+                        ? 1 + n->value[SF_NUMBER_LOG_RATE] * log(t[test].rate / t[0].rate)
+                        : 1;
+    return factor * evaluate(model, model->curve_count > 1 ? test : 0, n, strain, row, NULL, NULL);
 }
 
 /* Unloading runs on the slowest curve: the rate overstress follows the filtered rate of compression, which is
- * zero. At a temperature of its own there is one curve. */
-static double predict_unloading(const sf_compression_model *model, const gsl_vector *parameters,
-                                const numbers *n, int i, double *gradient) {
+ * zero. At a temperature of its own there is one curve. `peak`: energy at the turn of the point's test. */
+static double unloading_stress(const sf_compression_model *model, const numbers *n, int i, double peak) {
     const sf_compression_data *d = model->data;
-    const sf_compression_test *t = &d->config->test[d->test[i]];
-    int count = model->spline.count, curve = d->config->thermal ? d->test[i] : 0;
-    double hu = n->value[SF_NUMBER_HU], shape = n->value[SF_NUMBER_SHAPE], alpha = n->value[SF_NUMBER_ALPHA];
-    ordinate o, peak;
-    evaluate(model, n->coefficient[curve], n, d->strain[i], &model->value_row[i * count],
-             &model->area_row[i * count], &o);
-    evaluate(model, n->coefficient[curve], n, t->largest_strain, model->peak_row[d->test[i]][0],
-             model->peak_row[d->test[i]][1], &peak);
-    double ratio = fmax(1e-12, fmin(1, o.energy / peak.energy)), power = pow(ratio, shape);
-    double rest = fmax(1e-9, 1 - power), loss = pow(rest, alpha),
-           slope = (1 - hu) * alpha * loss / rest * power;
-    double factor = sf_unloading_factor(hu, shape, alpha, ratio), bend = shape * slope * o.stress;
-    if (gradient) {
-        double by_energy = bend / fmax(o.energy, 1e-12 * peak.energy), by_peak = -bend / peak.energy;
-        add_coefficients(model, n, curve, o.stress_by, factor, gradient);
-        add_coefficients(model, n, curve, o.energy_by, by_energy, gradient);
-        add_coefficients(model, n, curve, peak.energy_by, by_peak, gradient);
-        add_densification(model, parameters,
-                          factor * o.stress_by_exponent + by_energy * o.energy_by_exponent +
-                              by_peak * peak.energy_by_exponent,
-                          factor * o.stress_by_limit + by_energy * o.energy_by_limit +
-                              by_peak * peak.energy_by_limit,
-                          gradient);
-        add_number(model, parameters, SF_NUMBER_HU, loss * o.stress, gradient);
-        add_number(model, parameters, SF_NUMBER_SHAPE, slope * log(ratio) * o.stress, gradient);
-        add_number(model, parameters, SF_NUMBER_ALPHA, -(1 - hu) * loss * log(rest) * o.stress, gradient);
-    }
-    return factor * o.stress;
+    int count = model->spline.count;
+    double energy, stress = evaluate(model, d->config->thermal ? d->test[i] : 0, n, d->strain[i],
+                                     &model->value_row[i * count], &model->area_row[i * count], &energy);
+    return stress * sf_unloading_factor(n->value[SF_NUMBER_HU], n->value[SF_NUMBER_SHAPE],
+                                        n->value[SF_NUMBER_ALPHA], fmax(1e-12, fmin(1, energy / peak)));
 }
 
-void sf_compression_predict(const sf_compression_model *model, const gsl_vector *parameters, double *stress,
-                            gsl_matrix *jacobian) {
+static double peak_energy(const sf_compression_model *model, const numbers *n, int test) {
+    double energy;
+    evaluate(model, model->data->config->thermal ? test : 0, n,
+             model->data->config->test[test].largest_strain, model->peak_row[test][0],
+             model->peak_row[test][1], &energy);
+    return energy;
+}
+
+void sf_compression_predict(const sf_compression_model *model, const gsl_vector *parameters, bool unloading,
+                            double *stress) {
     const sf_compression_data *d = model->data;
-    branch maxwell = {.test = -1};
+    sf_compression_walk walk = {0};
+    double peak = 0;
     numbers n;
     unpack(model, parameters, &n);
-    if (jacobian)
-        gsl_matrix_set_zero(jacobian);
-    for (int i = 0; i < d->count; i++) {
-        double *gradient = jacobian ? gsl_matrix_ptr(jacobian, (size_t)i, 0) : NULL;
-        stress[i] = d->unloading[i] ? predict_unloading(model, parameters, &n, i, gradient)
-                                    : loading_stress(model, parameters, &n, d->test[i], d->strain[i],
-                                                     &model->value_row[i * model->spline.count], gradient);
-        if (model->form.rate == SF_RATE_MAXWELL)
-            stress[i] += predict_maxwell(model, parameters, &n, i, &maxwell, gradient);
+    for (int i = 0, test = -1; i < d->count; i++) {
+        const sf_compression_test *t = &d->config->test[d->test[i]];
+        if (test != d->test[i]) {
+            test = d->test[i];
+            walk = (sf_compression_walk){0};
+            peak = unloading ? peak_energy(model, &n, test) : 0;
+        }
+        double viscous = model->form.rate == SF_RATE_MAXWELL
+                             ? n.value[SF_NUMBER_ED] *
+                                   sf_compression_maxwell(n.value[SF_NUMBER_BETA1], t->rate, t->largest_strain,
+                                                          d->strain[i], d->unloading[i], &walk)
+                             : 0;
+        if (d->unloading[i] == unloading)
+            stress[i] = viscous + (unloading ? unloading_stress(model, &n, i, peak)
+                                             : loading_stress(model, &n, test, d->strain[i],
+                                                              &model->value_row[i * model->spline.count]));
     }
 }
 
-double sf_compression_exponent(const sf_compression_model *model, const gsl_vector *parameters,
-                               double *gradient) {
+double sf_compression_exponent(const sf_compression_model *model, const gsl_vector *parameters) {
     numbers n;
-    double by[SF_SPLINE_COEFFICIENTS];
     unpack(model, parameters, &n);
-    memset(gradient, 0, (size_t)model->parameter_count * sizeof *gradient);
-    if (model->form.rule != SF_H1_AUTO) {
-        add_number(model, parameters, SF_NUMBER_EXPONENT, 1, gradient);
-        return n.value[SF_NUMBER_EXPONENT];
-    }
-    double exponent = natural_exponent(model, n.coefficient[0], by);
-    add_coefficients(model, &n, 0, by, 1, gradient);
-    return exponent;
+    return exponent_of(model, n.coefficient[0], &n);
 }
 
-double sf_compression_curve(sf_compression_model *model, const gsl_vector *parameters, int test,
-                            double strain, double *gradient) {
+double sf_compression_curve(const sf_compression_model *model, const gsl_vector *parameters, int test,
+                            double strain) {
+    sf_spline spline = model->spline; /* GSL's workspace is scratch */
     double row[SF_SPLINE_COEFFICIENTS];
     numbers n;
     unpack(model, parameters, &n);
-    sf_spline_value(&model->spline, fmin(strain, model->data->start), row);
-    if (gradient)
-        memset(gradient, 0, (size_t)model->parameter_count * sizeof *gradient);
-    return loading_stress(model, parameters, &n, test, strain, row, gradient);
+    sf_spline_value(&spline, fmin(strain, model->data->start), row);
+    return loading_stress(model, &n, test, strain, row);
 }
 
 /* ---- set-up ---- */

@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The foam law of material/low_density_foam.c at a material point in uniaxial compression at a constant
- * nominal rate (lateral stretches 1), as a function of the parameters that compression tests identify, with
- * its derivatives. The loading curve is a cubic spline whose coefficients ascend. What lies beyond it is the
- * law's own: the densification (material/curve.h), the factor of unloading and the Maxwell branch
- * (material/low_density_foam.h); only the derivatives by the parameters are added here. DAMP is left out: it
- * is negligible at the rates of these tests.
+ * nominal rate (lateral stretches 1), as a function of the parameters that compression tests identify. The
+ * loading curve is a cubic spline whose coefficients ascend. What lies beyond it is the law's own: the
+ * densification (material/curve.h), the factor of unloading and the Maxwell branch
+ * (material/low_density_foam.h). DAMP is left out: it is negligible at the rates of these tests.
  *
  * A parameter vector holds for every curve the logarithms of the coefficients' increments, then the other
  * parameters mapped from their bounds to the real line. */
 #pragma once
 #include "study/fit/bspline.h"
 #include "study/fit/compression/compression_config.h"
-#include <gsl/gsl_matrix.h>
 
 /* The points of all tests in one list, with the scatter of each: the input of the joint fit. */
 typedef struct sf_compression_data {
@@ -89,21 +87,19 @@ void sf_compression_model_free(sf_compression_model *model);
 /* Sets the start of a search; `decay` (0 to 1) places BETA1 within its bounds. */
 void sf_compression_guess(const sf_compression_model *model, double decay, gsl_vector *parameters);
 
-/* Stress (Pa) of every point; `jacobian` [count][parameter_count] or NULL. */
-void sf_compression_predict(const sf_compression_model *model, const gsl_vector *parameters, double *stress,
-                            gsl_matrix *jacobian);
+/* Stress (Pa) of every point of loading or of unloading; the others are left as they are. */
+void sf_compression_predict(const sf_compression_model *model, const gsl_vector *parameters, bool unloading,
+                            double *stress);
 
-/* Value of a number, and in `slope` (or NULL) its derivative by its own entry of the vector. */
 double sf_compression_number(const sf_compression_model *model, const gsl_vector *parameters,
-                             sf_number number, double *slope);
-/* Exponent of the densification, also where A = 0 sets it, with its gradient [parameter_count]. */
-double sf_compression_exponent(const sf_compression_model *model, const gsl_vector *parameters,
-                               double *gradient);
+                             sf_number number);
+/* Exponent of the densification, also where A = 0 sets it. */
+double sf_compression_exponent(const sf_compression_model *model, const gsl_vector *parameters);
 
-/* Stress (Pa) of the loading curve at the rate of a test, at 0 <= strain <= data->end, and its gradient
- * [parameter_count] (or NULL). Without the Maxwell stress. */
-double sf_compression_curve(sf_compression_model *model, const gsl_vector *parameters, int test,
-                            double strain, double *gradient);
+/* Stress (Pa) of the loading curve at the rate of a test, at 0 <= strain <= data->end. Without the Maxwell
+ * stress. */
+double sf_compression_curve(const sf_compression_model *model, const gsl_vector *parameters, int test,
+                            double strain);
 
 /* A Maxwell branch of 1 Pa along a test; begins as zeros. */
 typedef struct sf_compression_walk {
