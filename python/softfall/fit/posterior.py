@@ -260,8 +260,8 @@ class Effort(NamedTuple):
     second: int = 70
     draws: int = 120
     rounds: int = 3
-    steps: int = 1600
-    burn: int = 500
+    steps: int = 2400
+    burn: int = 800
 
 
 USUAL = Effort()
