@@ -4,7 +4,6 @@
 #include "case/read.h"
 #include "material/laws.h"
 
-#include "study/batch.h"
 #include "material/curve.h"
 #include "study/fit/compression/compression_config.h"
 #include "io/plain_file.h"
@@ -171,15 +170,6 @@ static sf_status read_msh(const char *path, sf_error *err) {
 }
 
 /* A batch, and the same text as what became of its first group. */
-static sf_status read_manifest(const char *path, sf_error *err) {
-    sf_manifest m;
-    sf_error failure = SF_ERROR_INIT;
-    if (sf_manifest_read(path, &m, err) == SF_OK && m.count > 0)
-        sf_manifest_read_outcome(path, 1, m.run, &failure);
-    sf_manifest_free(&m);
-    return err->status;
-}
-
 static const fuzz_reader readers[] = {
     {"case", "case.cfg", read_case},
     {"curve", "curve.csv", read_curve},
@@ -192,7 +182,6 @@ static const fuzz_reader readers[] = {
     {"stream", "mesh.stream", read_stream},
     {"compression", "fit.cfg", read_compression},
     {"pressing", "pressing.csv", read_pressing},
-    {"manifest", "manifest.tsv", read_manifest},
 };
 
 const fuzz_reader *fuzz_reader_at(int index) {

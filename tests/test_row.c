@@ -101,16 +101,6 @@ static void text_tables_align_by_characters(void **state) {
     assert_page(&p, "  status  area (cm²)\n  a,\"b\"         1234\n  -                -\n");
 }
 
-static void html_table_has_a_column_for_each_name(void **state) {
-    (void)state;
-    page p;
-    sf_rows_html_table(open_page(&p), (sf_rows){declared, 3}, (sf_records){&undefined, sizeof undefined, 1});
-    assert_page(
-        &p, "<table class=\"dense\"><thead><tr><th class=\"r\">peak (g)</th><th class=\"r\">share (%)</th>"
-            "<th class=\"r\">rows</th></tr></thead><tbody>\n<tr><td class=\"r\">–</td>"
-            "<td class=\"r\">–</td><td class=\"r\">–</td></tr>\n</tbody></table>\n");
-}
-
 static void numbers_are_those_of_the_key(void **state) {
     (void)state;
     assert_float_equal(sf_row_number(&declared[0], &defined), 123.45, 1e-12);
@@ -127,7 +117,6 @@ int main(void) {
         cmocka_unit_test(json_has_every_key_and_null_where_undefined),
         cmocka_unit_test(text_lines_have_units_of_defined_values_only),
         cmocka_unit_test(text_tables_align_by_characters),
-        cmocka_unit_test(html_table_has_a_column_for_each_name),
         cmocka_unit_test(numbers_are_those_of_the_key),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

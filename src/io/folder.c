@@ -156,11 +156,6 @@ static bool is_locked(int handle, int tries) {
     return false;
 }
 
-bool sf_folder_wait_lock(const char *path, int *handle) {
-    *handle = sf_folder_open(path);
-    return *handle < 0 || !is_locked(*handle, -1);
-}
-
 sf_status sf_folder_lock(const char *path, int *handle, sf_error *err) {
     enum { TRIES = 50 }; /* the copies of a process that was killed end a moment after it */
     *handle = sf_folder_open(path);
@@ -190,12 +185,6 @@ int64_t sf_folder_count(const char *path, const char *prefix) {
     if (handle >= 0)
         close(handle);
     return count;
-}
-
-void sf_folder_remove_file(const char *path) {
-    struct stat info;
-    if (lstat(path, &info) == 0 && S_ISREG(info.st_mode))
-        unlink(path);
 }
 
 /* In the machine's byte order. */

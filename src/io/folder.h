@@ -27,8 +27,6 @@ void sf_folder_remove_known(int handle, bool (*known)(const char *name), const c
  * program that holds the descriptor (sf_process). `*handle` is for the caller to close, -1 on failure.
  * SF_ERR_INPUT: another program has it locked for longer than copies of a killed one take to end. */
 sf_status sf_folder_lock(const char *path, int *handle, sf_error *err);
-/* The same, but waits as long as it is locked; false if this process is to end (sf_process_stopped). */
-bool sf_folder_wait_lock(const char *path, int *handle);
 
 /* Removes the mark and the folder if nothing else is in it. */
 void sf_folder_leave(const char *path);
@@ -36,8 +34,6 @@ void sf_folder_leave(const char *path);
 /* The number of names in the folder that begin with `prefix`; -1: it cannot be read. */
 int64_t sf_folder_count(const char *path, const char *prefix);
 
-/* Removes a file of a folder with the mark, if it is a plain file. */
-void sf_folder_remove_file(const char *path);
 
 /* A folder of intermediate results that are found again by a key of everything they follow from: a file
  * KIND-<key, 16 hexadecimal digits>.bin each, written aside and renamed, with a checksum. A file that is

@@ -92,10 +92,23 @@ void sf_json_texts(sf_json *json, const sf_named_text *list) {
         sf_json_text(json, (*list)[0], (*list)[1]);
 }
 
+static void put_base64(FILE *out, const unsigned char *data, size_t size) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t k = 0; k < size; k += 3) {
+        size_t left = size - k;
+        unsigned three = (unsigned)data[k] << 16 | (left > 1 ? (unsigned)data[k + 1] << 8 : 0) |
+                         (left > 2 ? (unsigned)data[k + 2] : 0);
+        putc_unlocked(digits[three >> 18], out);
+        putc_unlocked(digits[three >> 12 & 63], out);
+        putc_unlocked(left > 1 ? digits[three >> 6 & 63] : '=', out);
+        putc_unlocked(left > 2 ? digits[three & 63] : '=', out);
+    }
+}
+
 void sf_json_base64(sf_json *json, const char *key, const unsigned char *data, size_t size) {
     begin(json, key);
     fputc('"', json->file);
-    sf_html_base64(json->file, data, size);
+    put_base64(json->file, data, size);
     fputc('"', json->file);
 }
 
@@ -147,13 +160,6 @@ void sf_csv_quoted(sf_csv *csv, const char *text) {
         fputc(*text == '\n' || *text == '\r' ? ' ' : *text, file);
     }
     fputc('"', file);
-}
-
-void sf_csv_text(sf_csv *csv, const char *text) {
-    if (text && (sf_csv_is_formula(text) || strpbrk(text, ",\"\r\n")))
-        sf_csv_quoted(csv, text);
-    else
-        fputs(text ? text : "", next_cell(csv));
 }
 
 void sf_csv_numbers(sf_csv *csv, int count, const double *value) {
@@ -272,13 +278,7 @@ void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records
     }
 }
 
-/* ---- HTML ---- */
-
-static void put_html_cell(sf_html_table *table, const sf_row *row, const void *record) {
-    char text[512];
-    const char *dash = sf_row_value(row, record).kind == SF_VALUE_TEXT ? "" : "–";
-    sf_html_cell(table, "%s", sf_row_shown(row, record, dash, text, sizeof text));
-}
+/* ---- text ---- */
 
 /* "name (unit)", as tables head a column. */
 static void put_heading(const sf_row *row, char *text, size_t size) {
@@ -291,37 +291,6 @@ static void put_heading(const sf_row *row, char *text, size_t size) {
 static bool is_number(const sf_row *row) {
     return row->type <= SF_ROW_INTEGER;
 }
-
-/* Returns the headings as sf_html_table_begin takes them; owned by the caller, NULL without memory. */
-static char *table_headings(sf_rows rows) {
-    SF_TEXT_STREAM(out, text, size);
-    bool first = true;
-    for (size_t k = 0; out && k < rows.count; k++) {
-        const sf_row *row = &rows.row[k];
-        if (!row->name)
-            continue;
-        char heading[160];
-        put_heading(row, heading, sizeof heading);
-        fprintf(out, "%s%s%s", first ? "" : "|", is_number(row) ? ">" : "", heading);
-        first = false;
-    }
-    if (out)
-        fclose(out);
-    return text;
-}
-
-void sf_rows_html_table(FILE *page, sf_rows rows, sf_records records) {
-    SF_OWNED char *headings = table_headings(rows);
-    SF_HTML_TABLE table = sf_html_table_begin(page, headings ? headings : "");
-    for (int64_t k = 0; k < records.count; k++) {
-        sf_html_row(&table);
-        for (size_t c = 0; c < rows.count; c++)
-            if (rows.row[c].name)
-                put_html_cell(&table, &rows.row[c], record_at(records, k));
-    }
-}
-
-/* ---- text ---- */
 
 void sf_row_text(FILE *out, const sf_row *row, const void *record) {
     char text[160];

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a report. A declaration states once how a value is called, its unit, its format and its meaning;
- * one writer each makes JSON, CSV, HTML and text of it. A record is any struct of the program; a declaration
+ * one writer each makes JSON, CSV and text of it. A record is any struct of the program; a declaration
  * points to a member of it, or has a function that computes the value. A value that a run does not define (a
  * number that is not finite, a negative count, an empty text) becomes null in JSON and a dash for
  * readers. */
 #pragma once
-#include "report/html.h"
+#include "io/staging.h"
 #include <stdint.h>
 
 /* Writes strictly valid JSON (RFC 8259): a number that is not finite becomes null, texts are escaped and
@@ -51,6 +51,7 @@ void sf_json_text(sf_json *json, const char *key, const char *text); /* NULL: nu
 typedef const char *sf_named_text[2];
 void sf_json_texts(sf_json *json, const sf_named_text *list); /* until a key is NULL */
 #define SF_JSON_TEXTS(json, ...) sf_json_texts(json, (const sf_named_text[]){__VA_ARGS__, {0}})
+/* The bytes in base64, as a script takes them. */
 void sf_json_base64(sf_json *json, const char *key, const unsigned char *data, size_t size);
 
 /* Writes a CSV file, cell after cell. A number has nine digits; the cell of a number that is not finite stays
@@ -72,7 +73,6 @@ sf_status sf_csv_close(sf_csv *csv, sf_error *err);
 void sf_csv_print(sf_csv *csv, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A text, in quotes where it needs them, or always; NULL: an empty cell. What a spreadsheet would compute, as
  * "=1+2", gets an apostrophe in front. Line ends become blanks. */
-void sf_csv_text(sf_csv *csv, const char *text);
 void sf_csv_quoted(sf_csv *csv, const char *text);
 bool sf_csv_is_formula(const char *text);
 /* Several cells: SF_CSV_NUMBERS(&csv, low, high); the same and the end of the line. */
@@ -148,9 +148,6 @@ const char *sf_row_shown(const sf_row *row, const void *record, const char *dash
 void sf_row_json(sf_json *json, const sf_row *row, const void *record);
 void sf_rows_json(sf_json *json, sf_rows rows, const void *record);
 void sf_rows_json_array(sf_json *json, const char *key, sf_rows rows, sf_records records);
-
-/* HTML: a table with a column for each declaration that has a name, and a row for each record. */
-void sf_rows_html_table(FILE *page, sf_rows rows, sf_records records);
 
 /* Text: a line "  name   value unit"; none without a name. */
 void sf_row_text(FILE *out, const sf_row *row, const void *record);

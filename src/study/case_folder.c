@@ -2,7 +2,7 @@
 #include "study/case_folder.h"
 
 #include "build_info.h"
-#include "study/run_folder.h"
+#include "io/staging.h"
 #include "case/grammar.h"
 #include "base/hash.h"
 #include "case/edit.h"

@@ -129,15 +129,6 @@ sf_status sf_config_number(const sf_config *config, const config_setting_t *grou
     return SF_OK;
 }
 
-sf_status sf_config_whole(const sf_config *config, const config_setting_t *group, const char *name,
-                          bool required, double low, double high, double *out, sf_error *err) {
-    SF_TRY(sf_config_number(config, group, name, required, low, high, out, err));
-    if (*out != floor(*out))
-        return sf_config_refuse(config, config_setting_get_member(group, name), err,
-                                "%s is %g; it must be a whole number", name, *out);
-    return SF_OK;
-}
-
 sf_status sf_config_flag(const sf_config *config, const config_setting_t *group, const char *name, bool *out,
                          sf_error *err) {
     const config_setting_t *s = find(config, group, name, false, err);
@@ -232,25 +223,3 @@ sf_status sf_config_list(const sf_config *config, const config_setting_t *group,
     return SF_OK;
 }
 
-sf_status sf_config_overrides(const sf_config *config, const char *name, int most, char **text, int *count,
-                              sf_error *err) {
-    const config_setting_t *list = config_lookup(&config->config, name);
-    if (!list)
-        return SF_OK;
-    if (!config_setting_is_array(list) && !config_setting_is_list(list))
-        return sf_config_refuse(config, list, err, "%s must be a list of texts, [\"group.key=value\", ...]",
-                                name);
-    if (config_setting_length(list) > most)
-        return sf_config_refuse(config, list, err, "%s has more than %d entries", name, most);
-    for (int k = 0; k < config_setting_length(list); k++) {
-        const config_setting_t *s = config_setting_get_elem(list, (unsigned)k);
-        const char *entry = config_setting_get_string(s);
-        if (!entry || !strchr(entry, '='))
-            return sf_config_refuse(config, s, err, "%s: each entry must be a text \"group.key=value\"",
-                                    name);
-        text[*count] = strdup(entry);
-        if (!text[(*count)++])
-            return SF_NO_MEMORY(err, "%s", config->path);
-    }
-    return SF_OK;
-}

@@ -29,9 +29,6 @@ sf_status sf_config_names(const sf_config *config, const config_setting_t *group
  * it is `required`. Bounds are inclusive. */
 sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,
                            bool required, double low, double high, double *out, sf_error *err);
-/* The same for a whole number. */
-sf_status sf_config_whole(const sf_config *config, const config_setting_t *group, const char *name,
-                          bool required, double low, double high, double *out, sf_error *err);
 /* SI value, from `low` on; `low` 0: above zero. */
 sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
                              sf_quantity kind, bool required, double low, double *out, sf_error *err);
@@ -52,10 +49,6 @@ sf_status sf_config_file(const sf_config *config, const config_setting_t *group,
 sf_status sf_config_list(const sf_config *config, const config_setting_t *group, const char *name,
                          bool required, int most, const config_setting_t **out, sf_error *err);
 
-/* The root's list of texts "group.key=value", as written, at most `most` of them; `*count` stays 0 if it is
- * absent. text [most]: from malloc, owned by the caller, also on failure. */
-sf_status sf_config_overrides(const sf_config *config, const char *name, int most, char **text, int *count,
-                              sf_error *err);
 
 /* Records SF_ERR_INPUT: "file:line: sentence". */
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,

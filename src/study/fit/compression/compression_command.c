@@ -4,9 +4,9 @@
 
 #include "build_info.h"
 #include "material/low_density_foam.h"
+#include "base/program.h"
 #include "report/row.h"
 #include "study/material_file.h"
-#include "study/setup.h"
 
 static const double CARD_STEP = 5e-4; /* strain, of the check by the solver's law */
 static const char *const outputs[] = {"fit.csv",        "loading_curve.csv", "fit.json",       "material.csv",
@@ -272,23 +272,43 @@ sf_status sf_compression_command(const char *path, const char *directory, bool f
     return err->status;
 }
 
-static sf_status run(sf_study *study, void *own, sf_error *err) {
-    (void)own;
-    SF_TRY(sf_compression_command(study->input, study->directory, study->force, stdout, &study->sink, err));
-    sf_study_close(study, "material.cfg and its curves, fit.json, fit.csv, loading_curve.csv", "");
-    return SF_OK;
+typedef struct options {
+    const char *input, *directory;
+    bool force;
+} options;
+
+static const sf_option known[] = {
+    {"output", 'o', "DIR", "write everything there (required)", .member = offsetof(options, directory)},
+    {"force", 'f', NULL, "replace the files of an earlier fit in DIR", .member = offsetof(options, force)},
+    {0},
+};
+
+static const char *find_fault(const sf_command *command) {
+    const options *o = command->list[0].values;
+    return o->input && o->directory ? NULL : "give FIT.cfg, and the output directory with -o";
 }
 
 int sf_fit_compression_main(int argc, char **argv) {
-    static const sf_study_program program = {
-        .name = "softfall-fit",
-        .word = "compression",
-        .argument = "FIT.cfg",
-        .doc = "A material file from compression tests of a foam.\vFits a free curve, its rate dependence and "
-               "its unloading; writes material.cfg with its curves, fit.json, fit.csv and loading_curve.csv. "
-               "`softfall fit compression' fits forms, cycles and hyperfoams too, and makes a page of each. "
-               "docs/identification.md explains FIT.cfg.",
-        .run = run,
-    };
-    return sf_study_main(argc, argv, &program, NULL);
+    static char name[] = "softfall-fit compression";
+    options o = {0};
+    sf_error err = SF_ERROR_INIT;
+    const sf_sink sink = sf_program_sink("softfall-fit");
+    const sf_command command = {
+        .program = "softfall-fit",
+        .operands = "FIT.cfg -o DIR",
+        .meaning = "A material file from compression tests of a foam.\vFits a free curve, its rate dependence and "
+                   "its unloading; writes material.cfg with its curves, fit.json, fit.csv and loading_curve.csv. "
+                   "`softfall fit compression' fits forms, cycles and hyperfoams too, and makes a page of each. "
+                   "docs/identification.md explains FIT.cfg.",
+        .second = "one FIT.cfg at a time: \"%s\" is one too many",
+        .operand = offsetof(options, input),
+        .fault = find_fault,
+        .list = {{known, &o}}};
+    gsl_set_error_handler_off(); /* statuses are looked at */
+    argv[0] = name;
+    if (sf_command_parse(&command, argc, argv, &err) == SF_OK &&
+        sf_compression_command(o.input, o.directory, o.force, stdout, &sink, &err) == SF_OK)
+        sf_log_print(stdout, "Written: %s/material.cfg and its curves, fit.json, fit.csv, loading_curve.csv\n",
+                     o.directory);
+    return sf_error_report(&err, "softfall-fit");
 }

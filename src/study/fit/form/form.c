@@ -13,13 +13,6 @@ const sf_parameter_info *sf_parameter_get(sf_foam_parameter parameter) {
     return &info[parameter];
 }
 
-sf_foam_parameter sf_parameter_find(const char *name) {
-    int k = 0;
-    while (k < SF_PARAMETER_COUNT && strcmp(info[k].name, name) != 0)
-        k++;
-    return (sf_foam_parameter)k;
-}
-
 const char *const sf_form_rate_names[] = {"none", "factor", "maxwell", "both"};
 
 sf_form_rate sf_form_rate_of(sf_foam_parameter p) {
@@ -252,61 +245,6 @@ double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter paramet
 static sf_config_item *given_fraction(sf_config_item *holder) {
     sf_config_item *start = config_setting_get_member(holder, "start");
     return start ? config_setting_get_member(start, "solid_fraction") : NULL;
-}
-
-sf_status sf_foam_form_check_fraction(const sf_config *config, sf_config_item *root, sf_config_item *model,
-                                      const char *key, const sf_foam_form *form, int unknown_count,
-                                      const sf_foam_parameter *unknown, sf_error *err) {
-    sf_config_item *density = config_setting_get_member(root, "solid_density"),
-                   *given = given_fraction(model) ? given_fraction(model) : given_fraction(root);
-    bool known = density || given;
-    for (int k = 0; k < unknown_count; k++)
-        known = known || unknown[k] == SF_PARAMETER_SOLID_FRACTION;
-    if (density && model == root && !sf_curve_form_entry(form->curve, SF_PARAMETER_SOLID_FRACTION))
-        return sf_config_refuse(config, density, err,
-                                "solid_density is given, but curve_form = \"%s\" has no solid fraction; "
-                                "leave it out, or take gas_solid",
-                                form->curve->name);
-    if (density && given)
-        return sf_config_refuse(config, given, err,
-                                "the solid fraction is given twice: by solid_density, which makes it %.3g, "
-                                "and as solid_fraction in start",
-                                form->base.density / form->solid_density);
-    if (form->curve == &sf_form_gas_solid && !known)
-        return sf_config_refuse(config, config_setting_get_member(model, key), err,
-                                "%s = \"gas_solid\" needs solid_density, the density of the solid in the "
-                                "cell walls, or solid_fraction among the unknown parameters",
-                                key);
-    return SF_OK;
-}
-
-sf_status sf_parameter_read(const sf_config *config, sf_config_item *group, sf_foam_parameter p, double *out,
-                            sf_error *err) {
-    const sf_parameter_info *about = sf_parameter_get(p);
-    if (about->quantity == SF_QUANTITY_COUNT)
-        return sf_config_number(config, group, about->name, true, about->low, about->high, out, err);
-    SF_TRY(sf_config_quantity(config, group, about->name, about->quantity, true, about->low, out, err));
-    if (!(*out <= about->high))
-        return sf_config_refuse(config, config_setting_get_member(group, about->name), err, "%s is above %g",
-                                about->name, about->high);
-    return SF_OK;
-}
-
-sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
-                                  sf_error *err) {
-    sf_config_item *item = config_setting_get_member(root, "solid_density");
-    double *solid = &form->solid_density, foam = form->base.density;
-    SF_TRY(sf_config_quantity(config, root, "solid_density", SF_DENSITY, false, 0, solid, err));
-    if (item && !(*solid >= LEAST_SOLID && *solid <= MOST_SOLID))
-        return sf_config_refuse(
-            config, item, err, "solid_density is %g kg/m3; solids that foams are made of have %g to %g kg/m3",
-            *solid, LEAST_SOLID, MOST_SOLID);
-    if (item && !(foam < MOST_FRACTION * *solid))
-        return sf_config_refuse(config, item, err,
-                                "solid_density is %g kg/m3, the foam's density %g kg/m3: a foam is less than "
-                                "half solid",
-                                *solid, foam);
-    return SF_OK;
 }
 
 static sf_status copy_card(const sf_foam_card *from, sf_foam_card *to, sf_error *err) {

@@ -71,8 +71,6 @@ typedef struct sf_parameter_info {
 } sf_parameter_info;
 
 const sf_parameter_info *sf_parameter_get(sf_foam_parameter parameter);
-/* SF_PARAMETER_COUNT if there is none of that name. */
-sf_foam_parameter sf_parameter_find(const char *name);
 
 /* Bits: the law has a factor on the curve, a Maxwell branch. */
 typedef enum sf_form_rate {
@@ -191,19 +189,6 @@ typedef struct sf_foam_form {
     double solid_density;       /* kg m-3, of the solid in the cell walls; 0: not known */
 } sf_foam_form;
 
-/* The key solid_density of a fit file, if it is there. SF_ERR_INPUT: it is not plausible for this foam (the
- * foam must be lighter than half of it, and a solid has between 300 and 20,000 kg/m3). */
-sf_status sf_foam_form_read_solid(const sf_config *config, sf_config_item *root, sf_foam_form *form,
-                                  sf_error *err);
-/* Checks that the solid fraction is known in one way, where the form has one: by solid_density in `root`, as
- * solid_fraction in the `start` of `root` or of the `model` in it, or as one of the unknowns. `key` is the
- * name under which `model` has the form. */
-sf_status sf_foam_form_check_fraction(const sf_config *config, sf_config_item *root, sf_config_item *model,
-                                      const char *key, const sf_foam_form *form, int unknown_count,
-                                      const sf_foam_parameter *unknown, sf_error *err);
-/* The start value (SI) of a parameter in the group that has it. */
-sf_status sf_parameter_read(const sf_config *config, sf_config_item *group, sf_foam_parameter parameter,
-                            double *out, sf_error *err);
 
 /* Start values (SI) of every parameter: medians of the form's priors, and the base's own values. The solid
  * fraction is density over solid_density, 0 if that is not known (gas_solid: then 0.05). */
