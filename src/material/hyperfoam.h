@@ -50,10 +50,6 @@ sf_hyperfoam_point sf_hyperfoam_evaluate(const sf_hyperfoam *foam, const double 
  * method. False if there is none. */
 bool sf_hyperfoam_release(const sf_hyperfoam *foam, int held, double stretch[3]);
 
-/* Ratio of lateral to axial strain, as logarithms, in uniaxial compression with free sides to `strain`; NaN
- * if there is none. Of one term it is nu at any strain. */
-double sf_hyperfoam_poisson(const sf_hyperfoam *foam, double strain);
-
 /* The place at which the terms cease to be stable. */
 typedef struct sf_hyperfoam_failure {
     const char *path; /* "uniaxial compression" ... ; static storage */
