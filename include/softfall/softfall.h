@@ -237,7 +237,7 @@ SOFTFALL_API softfall_status softfall_material_write(const softfall_material *ma
 
 /* ---- Compression tests (libsoftfall-build) ---- */
 
-/* A compression test and what its file does not say; zeros and NULL: nothing. */
+/* The facts about a compression test that its file does not state; zeros and NULL: none. */
 typedef struct softfall_compression_source {
     const char *path;
     double rate, area, thickness; /* 1/s; m2 and m, of a specimen whose force and displacement are in the file */

@@ -166,7 +166,7 @@ softfall_status softfall_form_material(const softfall_form *form, const double *
         return softfall_return(&err, error);
     card.informed_strain = informed;
     const sf_material made = sf_foam_material(&card);
-    *out = sf_api_material(&made, &err);
+    *out = sf_material_handle(&made, &err);
     return softfall_return(&err, error);
 }
 

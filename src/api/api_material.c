@@ -19,7 +19,7 @@ softfall_status softfall_material_read(const char *path, double temperature, sof
     return softfall_return(&err, error);
 }
 
-softfall_material *sf_api_material(const sf_material *material, sf_error *err) {
+softfall_material *sf_material_handle(const sf_material *material, sf_error *err) {
     softfall_material *m = sf_alloc(err, 1, sizeof *m, "a material");
     if (m && !(m->parameters = strdup("")))
         SF_NO_MEMORY(err, "a material");
@@ -115,7 +115,7 @@ softfall_status softfall_hyperfoam_material(const softfall_hyperfoam *values, so
         card.term[k] = (sf_hyperfoam_term){
             .mu = values->mu[k], .alpha = values->alpha[k], .nu = values->nu[k]};
     const sf_material made = sf_hyperfoam_material(&card);
-    *out = sf_api_material(&made, &err);
+    *out = sf_material_handle(&made, &err);
     return softfall_return(&err, error);
 }
 

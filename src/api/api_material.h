@@ -9,4 +9,4 @@ struct softfall_material {
 };
 
 /* Returns a handle of a copy; NULL without memory. */
-softfall_material *sf_api_material(const sf_material *material, sf_error *err);
+softfall_material *sf_material_handle(const sf_material *material, sf_error *err);

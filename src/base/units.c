@@ -260,23 +260,12 @@ static unit_text read_unit(const char *text) {
 /* ---- the database ---- */
 
 static sf_units *held;
-static int holders;
 
 sf_status sf_units_hold(sf_error *err) {
     sf_units *units = NULL;
-    if (holders == 0 && sf_units_open(&units, err) != SF_OK)
-        return err->status;
-    if (holders++ == 0)
+    if (!held && sf_units_open(&units, err) == SF_OK)
         held = units;
-    return SF_OK;
-}
-
-void sf_units_let_go(void) {
-    if (--holders == 0) {
-        sf_units *last = held;
-        held = NULL;
-        sf_units_close(&last);
-    }
+    return err->status;
 }
 
 sf_status sf_units_open(sf_units **units, sf_error *err) {

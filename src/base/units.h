@@ -43,10 +43,9 @@ typedef struct sf_units sf_units;
 sf_status sf_units_open(sf_units **units, sf_error *err);
 void sf_units_close(sf_units **units);
 
-/* For a program that reads very many cases: until as many sf_units_let_go, every sf_units_open takes the
- * database that is loaded now (5 ms each otherwise). For programs, in one thread. */
+/* For a program that reads very many cases: from now on every sf_units_open takes the database that is loaded
+ * now (5 ms each otherwise). For programs, in one thread. */
 sf_status sf_units_hold(sf_error *err);
-void sf_units_let_go(void);
 
 /* Reads "number unit" into the SI value of `kind`: one decimal number, one unit in the grammar and of the
  * names of base/units.h, nothing else. SF_ERR_INPUT if the number or the unit is missing or unknown, if

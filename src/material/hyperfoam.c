@@ -136,18 +136,18 @@ static double rest_modulus(const void *card) {
     return sf_hyperfoam_build(card).rest;
 }
 
+static const double LARGEST_POISSON = 0.35; /* that ran on every mesh tried (theory, section 4) */
+
 /* Ratio of lateral to axial strain, as logarithms, in uniaxial compression with free sides to `strain`; NaN
  * if there is none. Of one term it is nu at any strain. */
-static double poisson(const sf_hyperfoam *foam, double strain) {
+static double poisson_ratio(const sf_hyperfoam *foam, double strain) {
     double stretch[3] = {1 - strain, 1, 1};
     return sf_hyperfoam_release(foam, 1, stretch) ? -log(stretch[1]) / log(stretch[0]) : NAN;
 }
 
-static const double LARGEST_POISSON = 0.35; /* that ran on every mesh tried (theory, section 4) */
-
 static bool caution(const void *card, char *text, size_t size) {
     sf_hyperfoam foam = sf_hyperfoam_build(card);
-    double ratio = fmax(poisson(&foam, 0.01), poisson(&foam, 0.5));
+    double ratio = fmax(poisson_ratio(&foam, 0.01), poisson_ratio(&foam, 0.5));
     if (!(ratio > LARGEST_POISSON + 1e-6))
         return false;
     snprintf(text, size,

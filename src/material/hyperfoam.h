@@ -50,7 +50,6 @@ sf_hyperfoam_point sf_hyperfoam_evaluate(const sf_hyperfoam *foam, const double 
  * method. False if there is none. */
 bool sf_hyperfoam_release(const sf_hyperfoam *foam, int held, double stretch[3]);
 
-
 /* The place at which the terms cease to be stable. */
 typedef struct sf_hyperfoam_failure {
     const char *path; /* "uniaxial compression" ... ; static storage */

@@ -92,7 +92,7 @@ def form_summary(fit: FormFit) -> dict[str, Any]:
         p = form.parameters[form.index[name]]
         made["parameters"].append({"name": name, "unit": p.unit, "value": fit.at(name) / p.per_unit, "relative_error": number(fit.error[k]), "at_bound": fit.at_bound[k],
                                    **({"bound": _bound(fit, k)} if fit.at_bound[k] else {}), "determined": fit.is_determined(k)})
-    made["correlation"] = [[number(v) for v in row] for row in fit.correlation]
+    made["correlation"] = [[round(float(v), 6) for v in row] for row in fit.correlation]
     if fit.one and fit.unloading:
         made |= {"unloading_with_ALPHA_1": fit.one.json(), "unloading": fit.unloading.json()}
     if given.cycles:

@@ -184,8 +184,6 @@ sf_status sf_curve_form_tabulate(const sf_curve_form *form, const double *value,
 
 /* ---- parameters of a foam ---- */
 
-static const double LEAST_SOLID = 300, MOST_SOLID = 20000; /* kg m-3 */
-static const double MOST_FRACTION = 0.5;
 static const double UNKNOWN_SOLID_SD = 0.5; /* of the logarithm */
 static const double USUAL_SOLID = 0.05;     /* solid fraction, where it is not known */
 static const double RATE_FACTOR = 0.1;      /* median where the start material has none */
@@ -240,11 +238,6 @@ double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter paramet
     if (parameter == SF_PARAMETER_SOLID_FRACTION && !(form->solid_density > 0))
         return UNKNOWN_SOLID_SD;
     return entry ? entry->prior_sd : sf_parameter_get(parameter)->prior_sd;
-}
-
-static sf_config_item *given_fraction(sf_config_item *holder) {
-    sf_config_item *start = config_setting_get_member(holder, "start");
-    return start ? config_setting_get_member(start, "solid_fraction") : NULL;
 }
 
 static sf_status copy_card(const sf_foam_card *from, sf_foam_card *to, sf_error *err) {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include "material/foam_card.h"
-#include "study/config.h"
 
 /* The parameters of a foam that measurements identify: those of every foam, and those of the forms of its
  * loading curve (form.h). A set of values is an array [SF_PARAMETER_COUNT] in SI. */
