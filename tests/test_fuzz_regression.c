@@ -70,14 +70,12 @@ static void cut_and_changed_seeds_are_read_or_refused(void **state) {
                  {"curve", "foam.csv", CUTS, 23},
                  {"motion", "press.csv", 11, 26},
                  {"reference", "measured.csv", 12, 25},
-                 {"fit", "drops.cfg", CUTS, 27},
                  {"compression", "fit.cfg", 14, 28},
                  {"pressing", "slow.csv", 6, 20},
                  {"geo", "cube.geo", 3, 0}, /* only the names of parameters are read */
                  {"model", "cube.h5", CUTS, 6},
                  {"results", "cube.h5", CUTS, 2},
-                 {"stream", "tetrahedron.stream", CUTS, 8},
-                 {"manifest", "three.tsv", 11, 5}};
+                 {"stream", "tetrahedron.stream", CUTS, 8}};
     (void)state;
     for (size_t k = 0; k < sizeof seeds / sizeof seeds[0]; k++) {
         char name[128];

@@ -24,11 +24,12 @@ enum { SF_FEW_NODES = 50000, SF_FEW_POINTS = 3000 };
 
 /* Calls a function whose loops are `omp for`, by all threads where that is `worth` it. One thread runs it
  * without a team: each barrier of a team is a system call in libgomp, even of a team of one, and the step of
- * a section has 17 of them. Drops side by side are in a parallel region already and need teams of their own. */
+ * a section has 17 of them. Drops side by side are in a parallel region already, if only of one
+ * thread, and need teams of their own: such a loop would be one of that region. */
 #define SF_BY_ALL_THREADS(worth, call)                                                                       \
     do {                                                                                                     \
         const bool many = worth;                                                                             \
-        if (omp_get_max_threads() > 1 || omp_in_parallel()) {                                                \
+        if (omp_get_max_threads() > 1 || omp_get_level() > 0) {                                                \
             _Pragma("omp parallel if (many)") call;                                                          \
         } else                                                                                               \
             call;                                                                                            \

@@ -82,7 +82,7 @@ static sf_status check_names(const sf_case_reader *reader, const config_setting_
     return u.count > 0 ? refuse_unknown(reader, &u, err) : SF_OK;
 }
 
-/* True if the key names files, whose contents are hashed where they are read (study/run_folder.c). */
+/* True if the key names files, whose contents are hashed where they are read. */
 static bool names_files(const sf_key *key) {
     return key->kind == SF_KEY_PATH || key->kind == SF_KEY_CURVE || key->kind == SF_KEY_CURVES ||
            key->kind == SF_KEY_MOTION;

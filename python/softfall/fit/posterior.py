@@ -461,14 +461,20 @@ class Average:
     def first(self) -> Posterior:
         return next(one for one in self.posteriors if one is not None)
 
-    def quantile(self, d: int, k: int, scatter: float = 0.0, model: int | None = None) -> Array:
-        """Returns the quantiles TAIL of a number of a drop, of a single pad and drop with their scatter, by one model or by all; NaN: not defined."""
+    def repeatability(self, k: int) -> float:
+        """Returns the standard deviation of the logarithm by which a measurement of a number scatters: that of the measured drops."""
+        told = [drop.sd[KINDS[k].key] for drop in self.first.problem.measured if KINDS[k].key in drop.sd]
+        return math.sqrt(float(np.mean(np.square(told)))) if told else KINDS[k].sd
+
+    def quantile(self, d: int, k: int, scatter: float | None = None, model: int | None = None) -> Array:
+        """Returns the quantiles TAIL of what is measured of a drop, or of a single pad and drop with their scatter, by one model or by all; NaN: not defined."""
         values, known = self.values[d, k], ~np.isnan(self.values[d, k])
         if model is not None:
             known &= self.model_of == model
         if not known.any():
             return np.full(len(TAIL), math.nan)
         random = np.random.default_rng(self.seed + d)
+        scatter = self.repeatability(k) if scatter is None else scatter
         return quantiles(values[known] * np.exp(scatter * random.standard_normal(int(known.sum()))), self.sizes[known])
 
     def missing(self, d: int, k: int) -> float:
@@ -528,7 +534,7 @@ class Average:
         """Returns the interval of each model that has a weight."""
         made = []
         for m, label in enumerate(self.labels):
-            q = self.quantile(d, k, 0.0, m)
+            q = self.quantile(d, k, None, m)
             if not math.isnan(q[2]):
                 made.append({"model": label, **{key: nine_digits(value) if math.isfinite(value) else None for key, value in zip(("low90", "median", "high90"), q[1:4])}})
         return made
