@@ -5,7 +5,7 @@
     verify/study_axisymmetric.py [DIR] [--only NAME...]
 
 The quarter runs on 10 and on 5 mm; its value for ever finer meshes is f5 + (f5 - f10) / (2^p - 1), with the orders p = 2.9, 2.2 and 1.95 of a_max, HIC and indentation
-that finer meshes of the first drop show. The edge of a disc has order 1, so that this value is none: discs are compared with their own sections on 1.25 mm.
+that finer meshes of the first drop show. A disc shows no such order: it is compared with its own section on 1.25 mm, which says nothing of its quarter.
 The section on 5 mm is compared with that value. It writes DIR/axisymmetric.md. Exit code: the number of differences from the value for
 ever finer meshes above 0.3 % of a_max, 0.5 % of HIC and 0.5 % of the indentation.
 """
