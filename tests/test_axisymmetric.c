@@ -483,6 +483,15 @@ static double volume_of(const sf_mesh *mesh, int layer) {
     return sum;
 }
 
+/* Sides between the nodes of a row. */
+static void add_sides(sf_node_set *row, int sides) {
+    row->face = calloc(4 * (size_t)sides, sizeof *row->face);
+    for (row->face_count = 0; row->face_count < sides; row->face_count++)
+        memcpy(&row->face[4 * row->face_count],
+               (const int32_t[4]){-1, -1, row->node[row->face_count], row->node[row->face_count + 1]},
+               4 * sizeof *row->face);
+}
+
 /* Four cells of each, the layers' volumes and the sides of a group kept, and the middles on these. */
 static void halving_keeps_layers_and_sides(void **state) {
     (void)state;
@@ -492,12 +501,8 @@ static void halving_keeps_layers_and_sides(void **state) {
     s.lower = 2;
     make_mesh(&s, &mesh);
     sf_node_set *top = &mesh.set[1];
-    top->face = calloc(4 * (size_t)s.cells[0], sizeof *top->face);
-    for (top->face_count = 0; top->face_count < s.cells[0]; top->face_count++)
-        memcpy(&top->face[4 * top->face_count],
-               (const int32_t[4]){-1, -1, top->node[top->face_count], top->node[top->face_count + 1]},
-               4 * sizeof *top->face);
-    assert_int_equal(sf_section_refine(&mesh, &fine, &err), SF_OK);
+    add_sides(top, s.cells[0]);
+    assert_int_equal(sf_section_refine(&mesh, NULL, &fine, &err), SF_OK);
     assert_int_equal(fine.cell_count, 4 * mesh.cell_count);
     for (int layer = 0; layer < 2; layer++)
         assert_relative(volume_of(&fine, layer), volume_of(&mesh, layer), 1e-12);
@@ -510,13 +515,65 @@ static void halving_keeps_layers_and_sides(void **state) {
     assert_int_equal(sf_mesh_check(&fine, &volume, &err), SF_OK);
     top->face[3] = 0; /* from the top to a node that is no neighbour */
     sf_mesh_free(&fine);
-    assert_int_equal(sf_section_refine(&mesh, &fine, &err), SF_ERR_INPUT);
+    assert_int_equal(sf_section_refine(&mesh, NULL, &fine, &err), SF_ERR_INPUT);
     assert_non_null(strstr(err.text, "the group \"top\" has a side that no cell of the section has"));
     sf_mesh_free(&mesh);
 }
 
+/* A cone with a flat face of 52 mm below and a wide rim above; `rise` of the cone, m. */
+static void make_cone(double rise, sf_surface *s) {
+    const double profile[4][2] = {{0, 0}, {0.052, 0}, {0.12, rise}, {0.12, 0.2}};
+    *s = (sf_surface){.node_count = 4, .position = calloc(12, sizeof *s->position)};
+    for (int k = 0; k < 4; k++) {
+        s->position[3 * k] = profile[k][0];
+        s->position[3 * k + 2] = profile[k][1];
+    }
+}
+
+/* Cells below an edge are split, their neighbours close up to them, and a smooth missile splits none. */
+static void edges_of_flat_missiles_split_cells(void **state) {
+    (void)state;
+    section s = {{20, 6}, 0.005, 0, 0, 2};
+    for (int steep = 0; steep < 2; steep++) {
+        sf_mesh mesh;
+        sf_surface missile;
+        sf_case c;
+        sf_error err = SF_ERROR_INIT;
+        fixture_case(&c, NULL);
+        make_mesh(&s, &mesh);
+        snprintf(c.contact_group, sizeof c.contact_group, "top");
+        make_cone(steep ? 0.1 : 0.005, &missile);
+        add_sides(&mesh.set[1], s.cells[0]);
+        int64_t before = mesh.cell_count;
+        double volume[2] = {volume_of(&mesh, 0), volume_of(&mesh, 1)}, whole;
+        assert_int_equal(sf_section_refine_edge(&c, &missile, &mesh, &err), SF_OK);
+        if (!steep)
+            assert_int_equal(mesh.cell_count, before);
+        else
+            assert_true(mesh.cell_count > before + 40);
+        for (int layer = 0; layer < 2; layer++)
+            assert_relative(volume_of(&mesh, layer), volume[layer], 1e-12);
+        assert_int_equal(sf_mesh_check(&mesh, &whole, &err), SF_OK);
+        double shortest = INFINITY, length = 0;
+        const sf_node_set *top = sf_mesh_find_set(&mesh, "top");
+        for (int64_t f = 0; f < top->face_count; f++) {
+            double side = fabs(mesh.position[3 * (int64_t)top->face[4 * f + 2]] -
+                               mesh.position[3 * (int64_t)top->face[4 * f + 3]]);
+            shortest = fmin(shortest, side);
+            length += side;
+        }
+        assert_close(length, 0.1, 1e-12);
+        assert_relative(shortest, steep ? 0.00125 : 0.005, 1e-9); /* twice: 30 mm is 12 times 2.5 mm */
+        assert_int_equal(top->count, top->face_count + 1);
+        sf_surface_free(&missile);
+        sf_mesh_free(&mesh);
+        sf_case_free(&c);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(edges_of_flat_missiles_split_cells),
         cmocka_unit_test(halving_keeps_layers_and_sides),
         cmocka_unit_test(rings_fill_the_volume_and_rows_are_complete),
         cmocka_unit_test(uniform_stretches_are_exact),

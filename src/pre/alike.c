@@ -51,6 +51,8 @@ static sf_status make_plate(const sf_contact_zone *zone, double thickness, sf_me
             rows = (int64_t)fmax(2, round(thickness / zone->spacing));
     m->node_count = (columns + 1) * (rows + 1);
     m->cell_count = columns * rows;
+    if (m->node_count > SF_SECTIONS_MOST)
+        return SF_REFUSE(err, "the plate has more than %d nodes", SF_SECTIONS_MOST);
     SF_ALLOC_ALL(err, "the section", SF_ROOM(m->position, 3 * m->node_count),
                  SF_ROOM(m->cell_type, m->cell_count), SF_ROOM(m->cell_ptr, m->cell_count + 1),
                  SF_ROOM(m->cell_node, 4 * m->cell_count), SF_ROOM(m->cell_layer, m->cell_count),

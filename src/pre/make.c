@@ -80,9 +80,12 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
         (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK)) {
         bool profile = c->axisymmetric && sf_gmsh_has_profile(session, c->surface_group);
         if ((profile ? sf_gmsh_read_profile : sf_gmsh_read_surface)(session, c->surface_group,
-                                                                    c->missile.unit, surface, err) == SF_OK &&
-            !c->axisymmetric)
-            sf_gmsh_read_hull(session, c->surface_group, c->missile.unit, surface, err);
+                                                                    c->missile.unit, surface, err) == SF_OK) {
+            if (c->axisymmetric)
+                sf_section_refine_edge(c, surface, mesh, err);
+            else
+                sf_gmsh_read_hull(session, c->surface_group, c->missile.unit, surface, err);
+        }
     }
     if (err->status == SF_OK && read_supports(session, c, mesh, support, err) == SF_OK)
         turn_up(c->up, mesh, surface);
@@ -106,7 +109,7 @@ void sf_sections_free(sf_sections *s) {
 
 static sf_status copy_sections(const sf_mesh *mesh, const sf_surface *missile, sf_sections *s,
                                sf_error *err) {
-    SF_TRY(sf_section_refine(mesh, &s->mesh[SF_SECTION_FINE], err));
+    SF_TRY(sf_section_refine(mesh, NULL, &s->mesh[SF_SECTION_FINE], err));
     SF_TRY(sf_surface_copy(missile, &s->missile[SF_SECTION_FINE], err));
     return s->mesh[SF_SECTION_EQUAL].node_count > 0
                ? sf_surface_copy(missile, &s->missile[SF_SECTION_EQUAL], err)
@@ -146,7 +149,7 @@ static void make_alike(const sf_case *c, const sf_model *m, const sf_contact_zon
         return;
     s->alike = true;
     if (sf_alike_make(c, m, zone, equal, &missile, &none) == SF_OK &&
-        (equal->node_count > SF_SECTIONS_MOST || copy_sections(equal, &missile, s, &none) != SF_OK))
+        copy_sections(equal, &missile, s, &none) != SF_OK)
         sf_sections_free(s);
 }
 

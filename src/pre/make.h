@@ -8,9 +8,8 @@ enum { SF_LIBRARIES_SIZE = 96 };
 /* Sections of a drop, for drops beside its own: with the spacing of the model and with half of it. Where the
  * drop is not axisymmetric, its quarter is not modelled or ends too near, they are those of one that is like
  * it (pre/alike.h). The first is empty where the model is that section; both are where there is none, or it
- * has more than SF_SECTIONS_MOST nodes. */
+ * has more than SF_SECTIONS_MOST nodes (pre/alike.h). */
 enum { SF_SECTION_EQUAL, SF_SECTION_FINE, SF_SECTIONS };
-enum { SF_SECTIONS_MOST = 800 };
 typedef struct sf_sections {
     sf_mesh mesh[SF_SECTIONS];
     sf_surface missile[SF_SECTIONS];

@@ -4,6 +4,7 @@
 #include "base/mat3.h"
 #include "base/sets.h"
 #include "pre/cloud/dual.h"
+#include "pre/mesh/refine.h"
 #include <string.h>
 
 static const double ON_AXIS = 1e-6; /* of the radius: on the axis */
@@ -445,4 +446,71 @@ sf_status sf_section_take_missile(sf_surface *s, sf_error *err) {
         sf_surface_free(&out);
     }
     return err->status;
+}
+
+/* ---- the edge of a flat missile ---- */
+
+static const double FLAT = 1e-3;    /* of the missile's radius: a flat face rises by less */
+static const double EDGE_REACH = 2; /* spacings: finer cells about the edge, and largest width of an edge */
+enum { EDGE_LEVELS = 2 };
+
+/* Largest radius of the profile up to the height z. */
+static double radius_at(const profile_point *p, int64_t count, double z) {
+    double radius = p[0].radius;
+    for (int64_t k = 1; k < count; k++) {
+        if (p[k].z > z) {
+            double part = (z - p[k - 1].z) / (p[k].z - p[k - 1].z);
+            return fmax(radius, p[k - 1].radius + part * (p[k].radius - p[k - 1].radius));
+        }
+        radius = fmax(radius, p[k].radius);
+    }
+    return radius;
+}
+
+/* Length of the side of a group that has the radius on it; 0: none has. */
+static double side_at(const sf_mesh *mesh, const sf_node_set *set, double radius) {
+    for (int64_t f = 0; f < set->face_count; f++) {
+        double a = mesh->position[3 * (int64_t)set->face[4 * f + 2]],
+               b = mesh->position[3 * (int64_t)set->face[4 * f + 3]];
+        if (fmin(a, b) <= radius && radius < fmax(a, b))
+            return fabs(b - a);
+    }
+    return 0;
+}
+
+/* Splits the cells whose middles lie between two radii, above the height z. */
+static sf_status split_band(const double radius[2], double z, sf_mesh *mesh, sf_error *err) {
+    sf_mesh fine = {.orphan_count = mesh->orphan_count};
+    SF_OWNED uint8_t *marked = sf_alloc(err, mesh->cell_count, 1, "cells below an edge");
+    for (int64_t c = 0; marked && c < mesh->cell_count; c++) {
+        int64_t first = mesh->cell_ptr[c];
+        double middle[3];
+        sf_mesh_middle(mesh, &mesh->cell_node[first], mesh->cell_ptr[c + 1] - first, middle);
+        marked[c] = middle[0] > radius[0] && middle[0] < radius[1] && middle[2] > z;
+    }
+    SF_TRY(err->status);
+    SF_TRY(sf_section_refine(mesh, marked, &fine, err));
+    sf_mesh_free(mesh);
+    *mesh = fine;
+    return SF_OK;
+}
+
+sf_status sf_section_refine_edge(const sf_case *c, const sf_surface *missile, sf_mesh *mesh, sf_error *err) {
+    const sf_node_set *contact = sf_mesh_find_set(mesh, c->contact_group);
+    sf_error none = SF_ERROR_INIT;
+    int64_t count = 0;
+    SF_OWNED profile_point *p = contact ? find_profile(missile, &count, &none) : NULL;
+    if (!p)
+        return SF_OK;
+    double low[3], high[3],
+        outer = radius_at(p, count, INFINITY), flat = radius_at(p, count, p[0].z + FLAT * outer),
+        spacing = side_at(mesh, contact, flat), edge = radius_at(p, count, p[0].z + spacing);
+    sf_box3(mesh->node_count, mesh->position, low, high);
+    if (!(flat > EDGE_REACH * spacing && edge - flat <= EDGE_REACH * spacing))
+        return SF_OK;
+    for (int k = 0; k < EDGE_LEVELS && SF_EDGE_ROWS * spacing > high[2] - low[2]; k++, spacing /= 2) {
+        double reach = EDGE_REACH * spacing;
+        SF_TRY(split_band((const double[2]){flat - reach, edge + reach}, high[2] - reach, mesh, err));
+    }
+    return SF_OK;
 }

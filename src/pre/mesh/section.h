@@ -23,3 +23,11 @@ sf_status sf_section_cut(const sf_case *c, const sf_mesh *solid, sf_mesh *sectio
  * plane y = 0, where contact is sought. SF_ERR_INPUT: it is no body of revolution about the axis, or its
  * profile is not seen from one point of the axis. */
 sf_status sf_section_take_missile(sf_surface *surface, sf_error *err);
+
+/* Makes the cells below the edge of a missile's flat face smaller, since the error that an edge leaves is
+ * decided by the spacing there (docs/theory.md, section 14): the edge and 2 spacings about it have at
+ * least SF_EDGE_ROWS spacings to the thickness, or a quarter of the mesh's. A missile that has no flat face,
+ * or whose edge is rounded more widely than about 2.5 spacings, leaves the mesh as it is, and so does one
+ * that sf_section_take_missile refuses. */
+enum { SF_EDGE_ROWS = 16 };
+sf_status sf_section_refine_edge(const sf_case *c, const sf_surface *missile, sf_mesh *mesh, sf_error *err);
