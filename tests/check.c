@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
 
 void check_skip_refused(const char *reason) {
@@ -27,4 +28,9 @@ void check_programs(const char *names) {
     snprintf(reason, sizeof reason, "not all of these programs are installed: %s", names);
     if (system(command) != 0)
         check_skip_missing(reason);
+}
+
+bool check_slow(void) {
+    const char *slow = getenv("SF_SLOW");
+    return slow && strcmp(slow, "1") == 0;
 }

@@ -3,6 +3,7 @@
  * block that hits a plane or a block aslant, Hertz' contact of a sphere. The foam is linear elastic, its
  * Poisson's ratio is zero. */
 #include "case/read.h"
+#include "check.h"
 #include "extreme.h"
 #include "layer_fixture.h"
 #include "model/model_check.h"
@@ -474,6 +475,13 @@ static double hertz_ratio(const program_place *p, bool two, double fine) {
     return ratio;
 }
 
+/* 4.6 % lower at 1.7 mm, of which the half of that spacing leaves less than the half (in the slow test
+ * below). */
+static void a_coarse_dome_on_a_slab_is_near_hertz(void **state) {
+    double ratio = hertz_ratio(*state, false, 1.7);
+    assert_true(ratio > 0.94 && ratio < 0.97);
+}
+
 static void a_dome_on_a_slab_and_two_domes_obey_hertz(void **state) {
     /* Two domes have the larger contact, and cost most: they are as accurate at the wider spacing. */
     for (int two = 0; two < 2; two++) {
@@ -494,7 +502,11 @@ int main(void) {
         cmocka_unit_test(a_corner_of_a_slit_sees_the_wall_beyond),
         cmocka_unit_test(a_skin_with_a_third_half_is_refused),
         cmocka_unit_test(each_interface_has_its_own_friction),
+        cmocka_unit_test(a_coarse_dome_on_a_slab_is_near_hertz),
+    };
+    const struct CMUnitTest slow[] = {
         cmocka_unit_test(a_dome_on_a_slab_and_two_domes_obey_hertz),
     };
-    return cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
+    return check_slow() ? cmocka_run_group_tests(slow, program_group_case, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
 }

@@ -85,9 +85,10 @@ static void zone_is_the_disc_of_the_sphere(void **state) {
 static void symmetry_leaves_the_zone(void **state) {
     (void)state;
     fixture quarter, whole;
-    const char *const coarse = "geometry.parameters.fine_spacing=10.0";
-    fixture_pad((const char *const[]){coarse, NULL}, &quarter);
-    fixture_pad((const char *const[]){coarse, "geometry.parameters.quarter=0",
+    const char *const coarse = "geometry.parameters.fine_spacing=10.0",
+                      *const outer = "geometry.parameters.outer_spacing=20.0";
+    fixture_pad((const char *const[]){coarse, outer, NULL}, &quarter);
+    fixture_pad((const char *const[]){coarse, outer, "geometry.parameters.quarter=0",
                                       "geometry.missile_parameters.quarter=0", NULL},
                 &whole);
     assert_true(fabs(whole.report.zone.half_width / quarter.report.zone.half_width - 1) < 0.01);
@@ -107,12 +108,14 @@ static void a_part_that_leads_has_its_own_width(void **state) {
                        "Physical Volume(\"missile\") = v();\n"
                        "Physical Surface(\"missile_surface\") = Boundary{ Volume{v()}; };\n"
                        "Mesh.CharacteristicLengthMax = 10;\n");
-    program_result r = program_succeed(p, "pre",
-                                       "'%s' -o stud.h5 --set geometry.parameters.quarter=0 --set "
-                                       "geometry.missile_file='\"%s\"' --set geometry.parameters.side=200.0 "
-                                       "--set geometry.parameters.zone_side=100.0 --set "
-                                       "'geometry.missile_parameters={}'",
-                                       fixture_source(EXAMPLE), program_path(p, "stud.geo"));
+    program_result r =
+        program_succeed(p, "pre",
+                        "'%s' -o stud.h5 --set geometry.parameters.quarter=0 --set "
+                        "geometry.missile_file='\"%s\"' --set geometry.parameters.side=200.0 "
+                        "--set geometry.parameters.fine_spacing=10.0 --set pad.mesh_error_limit=1 "
+                        "--set geometry.parameters.zone_side=100.0 --set "
+                        "'geometry.missile_parameters={}'",
+                        fixture_source(EXAMPLE), program_path(p, "stud.geo"));
     const char *at = strstr(r.out, "half width ");
     double width = at ? strtod(at + strlen("half width "), NULL) : 0;
     if (!(width > 11 && width < 28))
@@ -123,8 +126,9 @@ static void a_part_that_leads_has_its_own_width(void **state) {
 /* A prescribed motion has no a_max. */
 static void prescribed_motion_has_no_estimate(void **state) {
     const program_place *p = *state;
-    program_result r =
-        program_succeed(p, "pre", "'%s' -o press.h5", fixture_source("examples/compression/case.cfg"));
+    program_result r = program_succeed(
+        p, "pre", "'%s' -o press.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=20 ms'",
+        fixture_source("examples/compression/case.cfg"));
     assert_non_null(strstr(r.out, "expected mesh error       not estimated"));
     assert_true(read_error(p, "press.h5") == 0);
 }

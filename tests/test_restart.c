@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interrupted, killed, failed and prolonged runs of softfall-solve: the file always opens, nothing is lost,
- * and the bits are those of one run. SF_KILLS sets the number of kills (default 10). */
+ * and the bits are those of one run. Under SF_SLOW=1 one run is killed sixty times. */
+#include "check.h"
 #include "io/h5_data.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
@@ -29,8 +30,7 @@
 static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
 
 static int kill_count(void) {
-    const char *kills = getenv("SF_KILLS");
-    return kills ? atoi(kills) : 10;
+    return check_slow() ? 60 : 6;
 }
 
 /* s of the processor, in this build: of a run before its first steps, and of the rest of a run without
@@ -168,8 +168,8 @@ static void run_with_signals(const program_place *p, const char *results, const 
 
 static void interrupted_run_goes_on(void **state) {
     static const int numbers[] = {SIGINT, SIGTERM};
-    run_with_signals(*state, "interrupted.h5", numbers, 2, 6, true);
-    assert_true(run_restarts(*state, "interrupted.h5") >= 5);
+    run_with_signals(*state, "interrupted.h5", numbers, 2, 4, true);
+    assert_true(run_restarts(*state, "interrupted.h5") >= 3);
 }
 
 static void killed_run_loses_nothing(void **state) {
@@ -446,11 +446,12 @@ static int exit_code(pid_t child) {
 static void model_may_change_during_a_run(void **state) {
     static const char *const change[] = {"mv during.h5 moved_away.h5; cp model.h5 during.h5",
                                          "truncate -s 1000 during.h5", "cat model.h5 > during.h5"};
+    int count = check_slow() ? 3 : 2;
     const program_place *p = *state;
     program_succeed(p, "pre", "'%s' -o finer.h5 %s --set output.frame_interval='\"1 ms\"'",
-                    fixture_source(EXAMPLE), program_coarse(10));
+                    fixture_source(EXAMPLE), program_coarse(14));
     program_succeed(p, "solve", "finer.h5 -o undisturbed.h5 --threads 1");
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < count; k++) {
         program_shell(p, "rm -rf changed.h5*");
         pid_t child = start_and_stop(p, "finer.h5", "changed.h5");
         program_shell(p, "%s", change[k]);

@@ -13,6 +13,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "check.h"
 #include "extreme.h"
 #include "post_check.h"
 
@@ -21,7 +22,8 @@ typedef struct figures {
 } figures;
 
 static figures run(const program_place *p, const char *overrides) {
-    program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 %s", overrides);
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force --share shared --set pad.mesh_error_limit=10 %s",
+                    overrides);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
     program_figures(p, "r.h5 -o out --force");
     figures f = {.a_max = program_file_number(p, "out/summary.json", "a_max_g"),
@@ -50,7 +52,7 @@ static void use_example(const program_place *p, const char *name) {
 #define SUPPORT(file) "--set pad.fixed=[] --set support.file='\"geo/" file ".geo\"' "
 #define COARSE_PAD                                                                                           \
     "--set geometry.parameters.fine_spacing=12.5 --set geometry.parameters.outer_spacing=25.0 "              \
-    "--set solver.end_time='\"20 ms\"' " /* the peak is at 12 ms */
+    "--set solver.end_time='\"15 ms\"' " /* the peak is at 12 ms, over a hole at 14 ms */
 
 #define FINER_PAD "--set geometry.parameters.fine_spacing=10.0 --set geometry.parameters.outer_spacing=20.0 "
 
@@ -228,40 +230,46 @@ static const char POST[] =
     "Mesh.MeshSizeMin = size; Mesh.MeshSizeMax = size;\n";
 
 /* Edges of a support press the faces of the pad between the nodes of both, however far apart its own are. */
-static void edges_of_a_support_press_the_faces_between_nodes(void **state) {
-    static const char *const bodies[] = {"kerb", "pole"};
-    const program_place *p = *state;
+static void edges_press_the_faces_between_nodes(const program_place *p, const char *body) {
     double a_max[2];
     use_example(p, "eva50-v4.5");
     program_write_text(p, "geo/kerb.geo", KERB);
     program_write_text(p, "geo/pole.geo", POST);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 2; k++) {
         program_succeed(
             p, "pre",
-            "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 --set missile.velocity='\"3 m/s\"' "
+            "case.cfg -o m.h5 --force --share shared --set pad.mesh_error_limit=10 --set missile.velocity='\"3 m/s\"' "
             "--set geometry.parameters.side=200.0 --set geometry.parameters.zone_side=140.0 "
             "--set solver.end_time='\"24 ms\"' " FINER_PAD
             "--set pad.fixed=[] --set support.file='\"geo/%s.geo\"' --set support.parameters='{ size = %d; }'",
-            bodies[k / 2], k % 2 ? 5 : 30);
+            body, k ? 5 : 30);
         program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
         program_figures(p, "r.h5 -o out --force");
-        a_max[k % 2] = program_file_number(p, "out/summary.json", "a_max_g");
+        a_max[k] = program_file_number(p, "out/summary.json", "a_max_g");
         double depth = program_file_number(p, "out/summary.json", "rim_depth_mm"),
                deep = program_history_largest(p, "penetration_mm");
-        print_message("%s: a_max %.2f g, edges %.4f mm in the faces at the peak, %.4f mm at most\n",
-                      bodies[k / 2], a_max[k % 2], depth, deep);
+        print_message("%s: a_max %.2f g, edges %.4f mm in the faces at the peak, %.4f mm at most\n", body,
+                      a_max[k], depth, deep);
         assert_true(depth < 0.01 * 9 && deep < 0.01 * 9);
         assert_true(program_history_largest(p, "energy_error_1") < 2e-3 &&
                     program_history_largest(p, "momentum_error_space_1") < 1e-12 &&
                     program_history_largest(p, "angular_momentum_error_1") < 1e-12);
-        if (k % 2)
-            assert_relative(a_max[0], a_max[1], 0.02);
     }
+    assert_relative(a_max[0], a_max[1], 0.02);
+}
+
+static void edges_of_a_post_press_the_faces_between_nodes(void **state) {
+    edges_press_the_faces_between_nodes(*state, "pole");
+}
+
+static void edges_of_a_kerb_press_the_faces_between_nodes(void **state) {
+    edges_press_the_faces_between_nodes(*state, "kerb");
 }
 
 static void refuse(const program_place *p, const char *words, const char *sentence) {
-    program_result r = program_run(p, "pre", "case.cfg -o bad.h5 --force --set pad.mesh_error_limit=10 %s%s",
-                                   FINER_PAD, words);
+    program_result r =
+        program_run(p, "pre", "case.cfg -o bad.h5 --force --share shared --set pad.mesh_error_limit=10 %s%s",
+                    FINER_PAD "--set geometry.parameters.side=250.0 ", words);
     if (r.code != 2 || !strstr(r.err, sentence))
         fail_msg("%s: exit code %d, %s", words, r.code, r.err);
 }
@@ -306,7 +314,7 @@ static void wrong_supports_are_refused(void **state) {
         {SUPPORT("shift") "--set support.parameters='{ z = 60.0; }'", "the missile meets the support"},
         {SUPPORT("shift") "--set support.parameters='{ x = 2000.0; }'",
          "before it within the pad's thickness"},
-        {SUPPORT("slab") "--set support.parameters='{ side = 420.0; element_size = 1.9; }'",
+        {SUPPORT("slab") "--set support.parameters='{ side = 100.0; element_size = 1.9; }'",
          "mesh the support coarser"}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         refuse(p, bad[k].words, bad[k].sentence);
@@ -342,9 +350,13 @@ int main(void) {
         cmocka_unit_test(a_support_moves_with_its_case),
         cmocka_unit_test(a_post_in_a_tube_acts_as_glue_does),
         cmocka_unit_test(a_slot_closes_onto_its_mirror_image),
-        cmocka_unit_test(edges_of_a_support_press_the_faces_between_nodes),
+        cmocka_unit_test(edges_of_a_post_press_the_faces_between_nodes),
         cmocka_unit_test(wrong_supports_are_refused),
         cmocka_unit_test(the_missile_stops_at_a_support),
     };
-    return cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(edges_of_a_kerb_press_the_faces_between_nodes),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, program_group_case, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
 }

@@ -85,7 +85,7 @@ static sf_status check_drops(const options *o, const sf_case *first, sf_error *e
 static void print_section(const sf_model *model, double formula) {
     if (model->expected_mesh_error != formula)
         printf("%-26sabout %.2g %% of a_max, by an axisymmetric drop on as thick a plate of this foam\n",
-               "expected mesh error", 100 * model->expected_mesh_error);
+               "mesh error by section", 100 * model->expected_mesh_error);
     if (model->section.a_max_g > 0)
         printf("%-26s%.2f g, HIC %.1f, %.2f mm for ever finer meshes of the section\n", "axisymmetric",
                model->section.a_max_g, model->section.hic, 1e3 * model->section.indentation);

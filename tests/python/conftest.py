@@ -19,6 +19,17 @@ from softfall import command  # noqa: E402
 BIN = pathlib.Path(os.environ["SF_BIN_DIR"])
 
 
+def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: takes long; runs under SF_SLOW=1, in the entry NAME_slow of ctest")
+
+
+def pytest_collection_modifyitems(config, items):
+    """Leaves the slow tests out, or under SF_SLOW=1 all others."""
+    chosen = [item for item in items if (item.get_closest_marker("slow") is not None) == (os.environ.get("SF_SLOW") == "1")]
+    config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
+    items[:] = chosen
+
+
 def program(name, *arguments, cwd):
     """Runs a program as a user does, and returns what it prints."""
     return subprocess.run([str(BIN / f"softfall-{name}"), *map(str, arguments)], cwd=cwd, check=True, capture_output=True, text=True).stdout
@@ -45,7 +56,7 @@ def command_here(*words):
 
 @pytest.fixture(scope="session")
 def place(tmp_path_factory):
-    """A folder with pad/case.cfg: nodes 20 mm apart, which take part of a second; slow.cfg beside it has 10 mm."""
+    """A folder with pad/case.cfg: nodes 20 mm apart, which take part of a second."""
     folder = tmp_path_factory.mktemp("drops")
     program("new", "pad", "--from", "eva50-v4.5", "--set", "geometry.parameters.fine_spacing=20", "--set",
             "geometry.parameters.outer_spacing=20", "--set", "geometry.missile_parameters.element_size=20", "--set",
@@ -69,8 +80,8 @@ def case(here):
 
 @pytest.fixture
 def slow(case):
-    """The case with finer nodes: some seconds, long enough to be ended in between."""
-    case.update({"geometry.parameters.fine_spacing": 10.0, "geometry.parameters.outer_spacing": 20.0})
+    """The case with finer nodes: a second or two, long enough to be ended in between."""
+    case.update({"geometry.parameters.fine_spacing": 12.5, "geometry.parameters.outer_spacing": 25.0})
     return case
 
 

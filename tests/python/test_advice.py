@@ -6,13 +6,14 @@ import math
 import os
 import pathlib
 import re
+import shutil
 
 import numpy as np
 import pytest
 
 import softfall
-from softfall import advice, cfh, protocol, protocol_advice, protocol_places
-from test_protocol import MAT, softfall_protocol
+from softfall import advice, cfh, cfh_draws, protocol, protocol_advice, protocol_places
+from test_protocol import MAT, protocol_here
 
 SOURCE = pathlib.Path(os.environ["SF_SOURCE_DIR"])
 POSTERIOR = SOURCE / "examples/materials/eva35_posterior"
@@ -204,10 +205,11 @@ def test_what_lies_above_the_highest_drop_may_lock_up():
     assert alone.locking({"centre": 0}, 5) == 0 and advice.advise(alone, dataclasses.replace(QUESTION, required=1.0)).probability > before[1][0]
 
 
-def test_to_be_expected_to_pass_is_wrong_no_more_often_than_stated():
-    """Of 120 foams a quarter locks up between 60 and 100 % of the required height, with drops below it; tools/advice_study.py has bent foams."""
+@pytest.mark.parametrize("count", [40, pytest.param(120, marks=pytest.mark.slow)])
+def test_to_be_expected_to_pass_is_wrong_no_more_often_than_stated(count):
+    """Of the foams a quarter locks up between 60 and 100 % of the required height, with drops below it; tools/advice_study.py has bent foams."""
     random, required, expected = np.random.default_rng(3), 0.75, []
-    for k in range(120):
+    for k in range(count):
         z, lock, rise = random.standard_normal(), required * random.uniform(0.6, 1) if k % 4 == 0 else math.inf, random.uniform(3, 12)
 
         def figure(h):
@@ -219,7 +221,7 @@ def test_to_be_expected_to_pass_is_wrong_no_more_often_than_stated():
         if told.expected:
             expected.append((1 - told.probability, figure(required) >= math.log(1000)))
     stated, wrong = np.sum(expected, axis=0)
-    assert len(expected) > 20 and wrong <= stated + 2 * math.sqrt(stated), (len(expected), stated, wrong)
+    assert len(expected) > count // 6 and wrong <= stated + 2 * math.sqrt(stated), (len(expected), stated, wrong)
 
 
 # ---- the stress of a draw in a compression test ----
@@ -365,14 +367,26 @@ def write_record(path, height, a_max):
     np.savetxt(path, np.column_stack([t, pulse]), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.9g")
 
 
+@pytest.fixture(params=[20, pytest.param(100, marks=pytest.mark.slow)])
+def posterior(request, tmp_path, monkeypatch):
+    """The first draws of the example: so few that they would be refused."""
+    folder = tmp_path / "posterior"
+    folder.mkdir()
+    for path in POSTERIOR.glob("draw-*"):
+        if int(path.stem.split("-")[1]) <= request.param:
+            shutil.copy(path, folder)
+    monkeypatch.setattr(cfh_draws, "LEAST_DRAWS", request.param)
+    return folder
+
+
 SECTION = SOURCE / "examples/eva50-axisymmetric/case.cfg"
 COARSE = {"geometry.parameters.fine_spacing": "25.0", "geometry.parameters.outer_spacing": "40.0", "pad.mesh_error_limit": "9.0"}
 
 
-def test_a_protocol_is_advised_and_learns(asked, tmp_path):
+def test_a_protocol_is_advised_and_learns(asked, posterior, tmp_path):
     """After a drop as the pad is expected to make it, the interval is shorter; the draws' foam is that of the case."""
-    common = ["--pad", SECTION, *(f"--set={key}={value}" for key, value in COARSE.items()), "--posterior", POSTERIOR, "--advise", "-j", "2"]
-    first = softfall_protocol(asked, *common, "-o", tmp_path / "out")
+    common = ["--pad", SECTION, *(f"--set={key}={value}" for key, value in COARSE.items()), "--posterior", posterior, "--advise", "-j", "1"]
+    first = protocol_here(asked, *common, "-o", tmp_path / "out")
     assert first.returncode == 0, first.stderr
     told = json.loads((tmp_path / "out/protocol.json").read_text())["advice"]
     assert {choice["kind"]: choice["cost"] for choice in told["choices"]} == {"drop": 1, "light": 1.5, "test": 2}
@@ -382,7 +396,7 @@ def test_a_protocol_is_advised_and_learns(asked, tmp_path):
     low, median, high = told["height_m"]
     assert low < median < high
     p = protocol.read(str(asked))
-    (curves, other), (found,) = protocol_advice._places(p, protocol_advice._question(p, math.nan, None), softfall.Case(SECTION, COARSE), tmp_path / "out/drops", str(POSTERIOR), {"jobs": 1}, [])
+    (curves, other), (found,) = protocol_advice._places(p, protocol_advice._question(p, math.nan, None), softfall.Case(SECTION, COARSE), tmp_path / "out/drops", str(posterior), {"jobs": 1}, [])
     assert found.study.simulated == 0
     pads = pads_of([curves])
     for point in found.summary["points"]:  # the case's own drops, whose foam is in the middle of the draws, lie in the middle of the pads
@@ -395,7 +409,7 @@ def test_a_protocol_is_advised_and_learns(asked, tmp_path):
     (tmp_path / "lab").mkdir()
     write_record(tmp_path / "lab/1.csv", height, a_max)
     (tmp_path / "lab/list.csv").write_text(f"file,height,drop,missile\n1.csv,{height:.6g} m,1,\n")
-    second = softfall_protocol(asked, *common, "--required", "1.2 m", "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    second = protocol_here(asked, *common, "--required", "1.2 m", "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
     assert second.returncode == 0, second.stderr
     after = json.loads((tmp_path / "out/protocol.json").read_text())
     assert "none of them" in after["advice"]["problem"] or after["advice"]["height_m"][2] - after["advice"]["height_m"][0] < high - low
@@ -403,7 +417,7 @@ def test_a_protocol_is_advised_and_learns(asked, tmp_path):
     assert "advice:" in page and (after["advice"]["stop"] or after["advice"]["problem"] or "not expected" in page or "The next measurement" in page)
     # without a measured drop the pad is expected to pass, and has not passed
     (tmp_path / "lab/list.csv").write_text("file,height,drop\n")
-    empty = softfall_protocol(asked, *common, "--required", f"{1.02 * math.exp(curves.log_height[0]):.4g} m", "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    empty = protocol_here(asked, *common, "--required", f"{1.02 * math.exp(curves.log_height[0]):.4g} m", "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
     assert empty.returncode == 0 and "not decided: expected to pass, not shown (probability of passing" in empty.stdout, empty.stdout + empty.stderr
     expected = json.loads((tmp_path / "out/protocol.json").read_text())
     assert expected["results"]["advice"]["passed"] is None and expected["advice"]["decision"] is None and expected["advice"]["expected_to_pass"]
@@ -413,7 +427,7 @@ def test_a_protocol_is_advised_and_learns(asked, tmp_path):
     for number, (height, part) in enumerate(zip(heights, (1.08, 1.0)), 1):
         write_record(tmp_path / f"lab/{number}.csv", height, part * math.exp(np.median(curves.value[0][:, k])))
     (tmp_path / "lab/list.csv").write_text("file,height,drop\n" + "".join(f"{k}.csv,{h:.6g} m,1\n" for k, h in enumerate(heights, 1)))
-    doubtful = softfall_protocol(asked, *common, "--required", "1.2 m", "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    doubtful = protocol_here(asked, *common, "--required", "1.2 m", "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
     after = json.loads((tmp_path / "out/protocol.json").read_text())
     assert doubtful.returncode == 0 and "drops look exchanged" in after["results"]["advice"]["stated"], doubtful.stdout + doubtful.stderr
     assert after["advice"]["decision"] is None and after["advice"]["stop"] is False and after["results"]["advice"]["passed"] is None
@@ -422,14 +436,14 @@ def test_a_protocol_is_advised_and_learns(asked, tmp_path):
     height, a_max = math.exp(other.log_height[k]), math.exp(np.median(other.value[0][:, k]))
     write_record(tmp_path / "lab/1.csv", height, a_max)
     (tmp_path / "lab/list.csv").write_text(f"file,height,drop,missile\n1.csv,{height:.6g} m,1,light\n")
-    third = softfall_protocol(asked, *common, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    third = protocol_here(asked, *common, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
     assert third.returncode == 0 and "left out" not in third.stdout, third.stdout + third.stderr
     lines = json.loads((tmp_path / "out/protocol.json").read_text())["results"]["advice"]["lines"]
     assert {line["of"] for line in lines} == {f"as it is, centre, missile light, {height:g} m"} and lines[0]["low"] < a_max < lines[0]["high"]
     (tmp_path / "lab/list.csv").write_text("file,height,drop,missile\n1.csv,1 m,1,heavy\n")
-    wrong = softfall_protocol(asked, *common, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    wrong = protocol_here(asked, *common, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
     assert wrong.returncode == 2 and "no missile 'heavy' in its group advice; there are light" in wrong.stderr
-    wrong = softfall_protocol(asked, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
+    wrong = protocol_here(asked, "--measured", tmp_path / "lab", "-o", tmp_path / "out", "--force")
     assert wrong.returncode == 2 and "has the missile of its protocol alone" in wrong.stderr
 
 
@@ -441,7 +455,7 @@ def test_a_protocol_is_advised_and_learns(asked, tmp_path):
     (["--advise", "--posterior", "nowhere"], "nowhere"),
 ])
 def test_what_cannot_be_advised_is_refused(asked, case, tmp_path, arguments, said):
-    result = softfall_protocol(asked, "--pad", case.path, *arguments, "-o", tmp_path / "out")
+    result = protocol_here(asked, "--pad", case.path, *arguments, "-o", tmp_path / "out")
     assert result.returncode != 0 and result.stderr.count("\n") == 1 and said in result.stderr, result.stderr
     assert not (tmp_path / "out/protocol.json").exists()
 
@@ -451,5 +465,5 @@ def test_other_limits_and_kinds_are_refused(case, tmp_path):
         '[[figure]]\nkey = "max_indentation_mm"\n\n', "", 1)
     (tmp_path / "mine.toml").write_text(text)
     for name, said in ((tmp_path / "mine.toml", "knows limits of"), ("d1596", "a cushion curve has none")):
-        result = softfall_protocol(name, "--pad", case.path, "--posterior", POSTERIOR, "--advise", "-o", tmp_path / "out")
+        result = protocol_here(name, "--pad", case.path, "--posterior", POSTERIOR, "--advise", "-o", tmp_path / "out")
         assert result.returncode == 2 and said in result.stderr, result.stderr

@@ -308,12 +308,13 @@ def test_every_control_has_a_name_and_the_keyboard_reaches_it(page, service):
     assert {"run", "slider-missile.velocity", "find", "field-missile.velocity"} <= seen
 
 
-def test_random_events_leave_page_and_server_whole(page, service):
+@pytest.mark.parametrize("events", [50, pytest.param(1000, marks=pytest.mark.slow)])
+def test_random_events_leave_page_and_server_whole(page, service, events):
     dice = random.Random(68)
     words = ["", "1", "-3", "5 mm", "4.5 m/s", "nan", "1e999", "\"", "<b>x</b>", "@/etc/passwd", "µ", "0.7"]
     ids = page.value("[...document.querySelectorAll('input[type=text]')].map(e => e.id)")
     sliders = page.value("[...document.querySelectorAll('input[type=range]')].map(e => e.id)")
-    for _ in range(200):
+    for _ in range(events):
         kind = dice.choice(["click", "click", "key", "write", "slide", "drag", "wheel"])
         x, y = dice.uniform(5, 1380), dice.uniform(5, 990)
         if kind == "click":

@@ -3,6 +3,7 @@
 import concurrent.futures
 import http.client
 import json
+import os
 import signal
 import socket
 import subprocess
@@ -13,7 +14,7 @@ import urllib.request
 import pytest
 
 import softfall
-from conftest import BIN
+from conftest import BIN, command_here
 
 
 class Service:
@@ -44,13 +45,13 @@ class Service:
         return self.program.wait(timeout=60)
 
 
-@pytest.fixture
-def service(here):
+@pytest.fixture(scope="module")
+def service(place):
+    os.chdir(place)
     made = Service("--input=missile.velocity [m/s]", "--input=geometry.parameters.thickness", "--output=a_max_g", "--output=hic",
                    "--option=missile.mass", "--jobs=2", "--threads=1")
     yield made
-    if made.program.poll() is None:
-        made.end()
+    assert made.end(signal.SIGINT) == 0
 
 
 def test_the_protocol(service, drop):
@@ -62,7 +63,6 @@ def test_the_protocol(service, drop):
     assert service.evaluate(4.5, 50) == (200, {"output": [[drop.figures["a_max_g"], drop.figures["hic"]]]})
     status, heavy = service.evaluate(4.5, 50, config={"missile.mass": "6 kg"})
     assert status == 200 and heavy["output"][0][1] > drop.figures["hic"]
-    assert service.end(signal.SIGINT) == 0
 
 
 @pytest.mark.parametrize("path, request_, kind, sentence", [
@@ -146,8 +146,7 @@ def test_a_drop_that_is_known_waits_for_nobody(here, drop):
 
 @pytest.mark.parametrize("option, said", [("--host=", "--host is empty"), ("--time-limit=nan", "--time-limit nan"), ("--time-limit=0", "--time-limit 0")])
 def test_a_server_for_everybody_is_not_started_by_mistake(here, option, said):
-    made = subprocess.run([str(BIN / "softfall-serve"), "pad/case.cfg", "--port=0", "--input=missile.velocity [m/s]", "--output=hic", option],
-                          capture_output=True, text=True)
+    made = command_here("serve", "pad/case.cfg", "--port=0", "--input=missile.velocity [m/s]", "--output=hic", option)
     assert made.returncode in (2, 64) and said in made.stderr and made.stderr.count("\n") <= 2
 
 
@@ -206,7 +205,7 @@ def test_a_server_that_is_ended_in_a_drop_finds_it_again(here, slow, number, cod
 
 def test_wrong_command_lines_end_with_a_sentence(here):
     def says(*words):
-        result = subprocess.run([str(BIN / "softfall-serve"), *words], capture_output=True, text=True)
+        result = command_here("serve", *words)
         return result.returncode, result.stderr
     good = ["pad/case.cfg", "--input=missile.velocity [m/s]", "--output=hic"]
     assert says("nowhere.cfg", *good[1:]) == (2, f"softfall serve: the file {here}/nowhere.cfg cannot be read: No such file or directory\n")

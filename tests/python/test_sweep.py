@@ -25,6 +25,7 @@ import pytest
 import softfall
 from softfall import campaign, effects, memory, plan as plans, rows_command, samples, sweep_page
 from softfall.store import Store
+from conftest import command_here
 
 BIN, EXAMPLES = Path(os.environ["SF_BIN_DIR"]), Path(__file__).resolve().parents[2] / "examples"
 SET = '"geometry.parameters.fine_spacing=25.0", "geometry.parameters.outer_spacing=40.0", "pad.mesh_error_limit=9.0"'
@@ -42,11 +43,12 @@ def start(*words: object, **options: Any) -> subprocess.Popen[str]:
     return subprocess.Popen([str(BIN / "softfall"), "sweep", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, **options)
 
 
-def sweep(*words: object, code: int = 0, **options: Any) -> str:
-    process = start(*words, **options)
-    out, err = process.communicate()
-    assert process.returncode == code, out + err
-    return out if code == 0 else err
+def sweep(*words: object, code: int = 0, cwd: Path | None = None) -> str:
+    """Runs the command within this process, and returns what it prints."""
+    with contextlib.chdir(cwd or "."):
+        done = command_here("sweep", *words)
+    assert done.returncode == code, done.stdout + done.stderr
+    return done.stdout if code == 0 else done.stderr
 
 
 def table(folder: Path, *left_out: str) -> list[dict[str, str]]:
@@ -73,7 +75,7 @@ def _of_programs(key: str) -> bool:
 def test_rows_are_those_of_the_programs_and_are_found_again(tmp_path: Path) -> None:
     foams = f'{{ key = "material"; name = "foam"; uncertain = true; files = ["{EXAMPLES}/materials/eva35.cfg", "{EXAMPLES}/materials/leap.cfg"]; }}'
     path = write_plan(tmp_path, f'{{ key = "missile.velocity"; name = "speed"; values = ["3 m/s", "30 m/s"]; }}, {foams}')
-    said = sweep(path, "-o", tmp_path / "out", "--jobs", "2", "--views", "worst")
+    said = sweep(path, "-o", tmp_path / "out", "--jobs", "1", "--views", "worst")
     assert "4 drops simulated, 0 were there" in said and "4 runs: " in said
     ours = table(tmp_path / "out")
     for row in ours:
@@ -117,7 +119,7 @@ def _kill(path: Path, out: Path, times: int, seed: int) -> int:
     return killed
 
 
-@pytest.mark.parametrize("times", [4, pytest.param(50, marks=pytest.mark.skipif(os.environ.get("SF_SLOW") != "1", reason="fifty kills take minutes: SF_SLOW=1"))])
+@pytest.mark.parametrize("times", [3, pytest.param(50, marks=pytest.mark.slow)])
 def test_nothing_is_lost_or_done_twice_by_kills(tmp_path: Path, times: int) -> None:
     path = write_plan(tmp_path, SPEEDS % (10 * times))
     assert _kill(path, tmp_path / "out", times, times) > times // 2
@@ -129,12 +131,12 @@ def test_nothing_is_lost_or_done_twice_by_kills(tmp_path: Path, times: int) -> N
 
 
 def test_two_processes_share_the_work_of_a_study(tmp_path: Path) -> None:
-    path = write_plan(tmp_path, SPEEDS % 24)
+    path = write_plan(tmp_path, SPEEDS % 12)
     both = [start(path, "-o", tmp_path / "out", "--jobs", "1") for _ in range(2)]
     said = [process.communicate() for process in both]
     assert [process.returncode for process in both] == [0, 0], said
     simulated = [int(line.split()[0]) for out, _ in said for line in out.splitlines() if "drops simulated" in line]
-    assert sum(simulated) == 24 and len(done(tmp_path / "out")) == 24
+    assert sum(simulated) == 12 and len(done(tmp_path / "out")) == 12
     assert all(row["run_status"] == "done" for row in table(tmp_path / "out"))
 
 
@@ -166,8 +168,9 @@ def test_a_full_disk_ends_the_campaign_and_loses_nothing(tmp_path: Path) -> None
     sweep(path, "-o", tmp_path / "first", "--jobs", "1")  # meshes are larger than the limit
     (tmp_path / "out").mkdir()
     shutil.copytree(tmp_path / "first/shared", tmp_path / "out/shared")
-    said = sweep(path, "-o", tmp_path / "out", "--jobs", "1", code=3, preexec_fn=limit)
-    assert "cannot be" in said and "Traceback" not in said
+    process = start(path, "-o", tmp_path / "out", "--jobs", "1", preexec_fn=limit)
+    _, said = process.communicate()
+    assert process.returncode == 3 and "cannot be" in said and "Traceback" not in said
     kept = done(tmp_path / "out")
     assert f"{12 - len(kept)} drops simulated, {len(kept)} were there" in sweep(path, "-o", tmp_path / "out", "--jobs", "1")
     assert table(tmp_path / "out") == table(tmp_path / "first")
@@ -177,7 +180,7 @@ def test_inputs_that_change_meanwhile_end_the_campaign(tmp_path: Path) -> None:
     shutil.copy(EXAMPLES / "materials/eva35.csv", tmp_path)
     foam = (EXAMPLES / "materials/eva35.cfg").read_text()
     (tmp_path / "foam.cfg").write_text(foam)
-    path = write_plan(tmp_path, SPEEDS % 40 + ', { key = "material"; files = ["foam.cfg"]; }')
+    path = write_plan(tmp_path, SPEEDS % 16 + ', { key = "material"; files = ["foam.cfg"]; }')
     process = start(path, "-o", tmp_path / "out", "--jobs", "1")
     while not done(tmp_path / "out"):
         assert process.poll() is None
@@ -188,18 +191,18 @@ def test_inputs_that_change_meanwhile_end_the_campaign(tmp_path: Path) -> None:
     assert not (tmp_path / "out/report.html").exists()
     kept = len(done(tmp_path / "out"))
     (tmp_path / "foam.cfg").write_text(foam)
-    assert f"{40 - kept} drops simulated, {kept} were there" in sweep(path, "-o", tmp_path / "out")
+    assert f"{16 - kept} drops simulated, {kept} were there" in sweep(path, "-o", tmp_path / "out")
 
 
 def test_series_and_two_meshes(tmp_path: Path) -> None:
     path = write_plan(tmp_path, SPEEDS % 2, 'refine = "richardson";')
     path.write_text(path.read_text().replace(SET, '"geometry.parameters.fine_spacing=8.0", "geometry.parameters.outer_spacing=16.0"'))
-    sweep(path, "-o", tmp_path / "two", "--jobs", "2")
+    sweep(path, "-o", tmp_path / "two", "--jobs", "1")
     rows, coarse = table(tmp_path / "two"), json.loads((tmp_path / "two/sweep.json").read_text())
     assert coarse["coarse_drops"] == 2 and all(float(row["hic_refined_error"]) > 0 or row["refined_note"] for row in rows)
     path = write_plan(tmp_path, '{ key = "missile.velocity"; values = ["3 m/s"]; }', case="series")
     path.write_text(path.read_text().replace('"pad.mesh_error_limit=9.0"', '"pad.mesh_error_limit=9.0", "series.drops=2", "series.counted=[2]"'))
-    sweep(path, "-o", tmp_path / "series", "--jobs", "2")
+    sweep(path, "-o", tmp_path / "series", "--jobs", "1")
     with open(tmp_path / "series/drops.csv", encoding="utf-8", newline="") as file:
         drops = list(csv.DictReader(file))
     assert [drop["counted"] for drop in drops] == ["no", "yes"] and drops[1]["hic"] == table(tmp_path / "series")[0]["hic"]
@@ -227,7 +230,7 @@ def test_a_geometry_that_changes_is_looked_at_again(tmp_path: Path) -> None:
     """A file that only the mesher reads, while the campaign runs and afterwards."""
     (tmp_path / "section.geo").write_text('Include "size.geo";\n' + (EXAMPLES.parent / "geo/section.geo").read_text())
     (tmp_path / "size.geo").write_text("// one\n")
-    path = write_plan(tmp_path, SPEEDS % 40)
+    path = write_plan(tmp_path, SPEEDS % 16)
     path.write_text(path.read_text().replace(SET, f'{SET}, "geometry.file={tmp_path}/section.geo"'))
     process = start(path, "-o", tmp_path / "out", "--jobs", "1")
     while not done(tmp_path / "out"):
@@ -236,10 +239,10 @@ def test_a_geometry_that_changes_is_looked_at_again(tmp_path: Path) -> None:
     (tmp_path / "size.geo").write_text("// two\n")
     _, err = process.communicate()
     assert process.returncode == 3 and "changed" in err and not (tmp_path / "out/report.html").exists()
-    assert "40 runs: 40 done, 0 failed, 0 open" in sweep(path, "-o", tmp_path / "out")
-    assert "\n0 drops simulated, 40 were there" in sweep(path, "-o", tmp_path / "out")
+    assert "16 runs: 16 done, 0 failed, 0 open" in sweep(path, "-o", tmp_path / "out")
+    assert "\n0 drops simulated, 16 were there" in sweep(path, "-o", tmp_path / "out")
     (tmp_path / "size.geo").write_text("// three\n")
-    assert "\n40 drops simulated, 0 were there" in sweep(path, "-o", tmp_path / "out")
+    assert "\n16 drops simulated, 0 were there" in sweep(path, "-o", tmp_path / "out")
 
 
 @pytest.mark.parametrize("kind", ["pipe", "folder", "empty", "bytes", "missing"])
