@@ -63,15 +63,6 @@ static const struct {
     {"fit", "compression hostile -o new"},
     {"fit", "compression include.cfg -o new"},
     {"fit", "compression test.cfg -o new"},
-    {"fit", "compression sound/fit.cfg -o new --simulate hostile"},
-    {"fit", "drop hostile -o new"},
-    {"fit", "drop include.cfg -o new"},
-    {"fit", "drop drop-material.cfg -o new"},
-    {"fit", "drop drop-case.cfg -o new"},
-    {"fit", "drop drop-curve.cfg -o new"},
-    {"fit", "drop predict.cfg -o new"},
-    {"batch", "hostile"},
-    {"batch", "hostile --group 00001-0"},
 };
 
 static int set_up(void **state) {
