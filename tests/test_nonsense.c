@@ -42,7 +42,6 @@ static int set_up(void **state) {
                 "printf 'time_ms,acceleration_g\\n0,0\\n1,5\\n' > short.csv && "
                 "printf 'time_ms,acceleration_g\\n0,0\\n1,nan\\n2,0\\n' > hole.csv && "
                 "printf 'time_ms,acceleration_g\\n0,0\\n2,5\\n1,0\\n' > order.csv && "
-                "printf 'height_m,v_test_m_s\\n1,9\\n2,12\\n' > rig.csv && "
                 "printf 'SystemCall \"touch written\";\\n' > run.geo && printf 'Save "
                 "\"written.msh\";\\n' > save.geo && "
                 "printf 'Printf(\"x\") > \"written\";\\n' > print.geo && printf 'SystemCall \"touch "
@@ -50,18 +49,6 @@ static int set_up(void **state) {
                 "printf 'Include StrCat(\"a\", \"b\");\\n' > include.geo && cp run.geo pad.txt && "
                 "printf '$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\\n1 999999999999 1 "
                 "999999999999\\n' > bomb.msh && "
-                "printf 'name = \"f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
-                "\"../good.cfg\"; %%s } );\\n' "
-                "'a_max_g = -3.0;' > minus.cfg && "
-                "printf 'name = \"f\"; material = \"none.cfg\"; drops = ( { case = \"../good.cfg\"; "
-                "a_max_g = 50.0; } );\\n' > "
-                "nomaterial.cfg && "
-                "printf 'name = \"f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
-                "\"../good.cfg\"; } );\\n' > "
-                "nothing.cfg && "
-                "printf 'name = \"../f\"; material = \"../materials/eva35.cfg\"; drops = ( { case = "
-                "\"../good.cfg\"; a_max_g = "
-                "50.0; } );\\n' > outside.cfg && "
                 "printf 'density = \"35 kg/m3\"; E = \"0.4 MPa\";\\ncurve = \"flat.csv\";\\n' > flat.cfg && "
                 ": > empty.geo && printf '*HEADING\\n*NODE\\n1, 0, 0, 0\\n' > deck.inp");
     if (made.code != 0)
@@ -330,18 +317,6 @@ static void command_lines_and_files(void **state) {
     REFUSE_ALL(*state, "post", "", post);
 }
 
-static void campaigns(void **state) {
-    static const nonsense fit[] = {
-        {"files/minus.cfg", {"minus.cfg:1", "a_max_g is -3", "0.001 to 1e+07"}},
-        {"files/nomaterial.cfg", {"nomaterial.cfg:1", "none.cfg", "No such file"}},
-        {"files/nothing.cfg", {"nothing.cfg:1", "no a_max_g, no HIC, nothing else measured"}},
-        {"files/outside.cfg",
-         {"outside.cfg:1", "\"../f\"", "no slashes"}}, /* would leave the output directory */
-        {"files/absent.cfg", {"absent.cfg", "No such file"}},
-    };
-    REFUSE_ALL(*state, "fit", "drop -o new", fit);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_of_a_case),
@@ -350,7 +325,6 @@ int main(void) {
         cmocka_unit_test(impacts_on_an_edge_are_told),
         cmocka_unit_test(files_may_have_units_of_their_own),
         cmocka_unit_test(command_lines_and_files),
-        cmocka_unit_test(campaigns),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -18,12 +18,7 @@
 
 static int set_up(void **state) {
     program_group_example(state);
-    program_result made = program_shell(
-        *state,
-        "R=\"$SF_SOURCE_DIR/examples\" && cp \"$R\"/fit/eva35_start.* . && cp -r \"$R/fit/compression\" sound && "
-        "printf 'height_m,speed_m_s\\n1,4.4\\n2,6.2\\n' > rig.csv && "
-        "printf 'name = \"foam\"; material = \"eva35_start.cfg\";\\ndrops = ( { name = \"a\"; case = \"good.cfg\"; a_max_g = "
-        "60.0; a_max_sd = 0.01; } );\\n' > fit.cfg");
+    program_result made = program_shell(*state, "cp -r \"$SF_SOURCE_DIR/examples/fit/compression\" sound");
     if (made.code != 0)
         fail_msg("%s", made.err);
     return 0;
@@ -87,8 +82,6 @@ static void an_input_is_never_an_output(void **state) {
         {"mkdir d1 && ln results.h5 d1/history.csv", "post", "results.h5 -o d1 --force", says},
         {"cp -r out d2", "post",
          "results.h5 -o d2 --force --reference d2/acceleration.csv --reference-filter none", says},
-        {"mkdir d3 && cp eva35_start.* d3 && sed 's|good.cfg|../good.cfg|' fit.cfg > d3/foam.cfg", "fit",
-         "drop d3/foam.cfg -o d3 --force", says},
         {"cp -r sound d4 && mv d4/fit.cfg d4/material.cfg", "fit",
          "compression d4/material.cfg -o d4 --force", says},
         {"cp -r sound d5 && mv d5/slow.csv d5/fit.csv && sed -i 's|slow.csv|fit.csv|' d5/fit.cfg", "fit",
@@ -111,7 +104,6 @@ static void a_device_or_a_pipe_is_never_an_output(void **state) {
         {"mkdir e1 && mkfifo e1/report.html", "post", "results.h5 -o e1 --force", says},
         {"mkdir e2 && ln -s /dev/null e2/summary.json", "post", "results.h5 -o e2 --force", says},
         {"mkdir e3 && ln -s /dev/null e3/fit.json", "fit", "compression sound/fit.cfg -o e3 --force", says},
-        {"mkdir e4 && ln -s /dev/null e4/foam.cfg", "fit", "drop fit.cfg -o e4 --force", says},
         {NULL, "post", "results.h5 -o pipe --force", "is not a folder"},
     };
     /* A node of one's own, where that is possible: what would happen to /dev/null is seen on it. */
@@ -127,8 +119,7 @@ static void a_name_that_cannot_be_made_is_refused_first(void **state) {
     static const char *const commands[][2] = {{"pre", "good.cfg"},
                                               {"solve", "model.h5"},
                                               {"post", "results.h5"},
-                                              {"fit", "compression sound/fit.cfg"},
-                                              {"fit", "drop fit.cfg"}};
+                                              {"fit", "compression sound/fit.cfg"}};
     for (size_t k = 0; k < sizeof commands / sizeof commands[0]; k++) {
         char words[600], longer[300];
         attempt a = {.program = commands[k][0], .words = words};
@@ -179,7 +170,6 @@ static void a_file_of_another_kind_is_not_replaced(void **state) {
          "it is no softfall-checkpoint file"},
         {"mkdir k6 && echo mine > k6/report.html", "post", "results.h5 -o k6 --force", page},
         {"mkdir k7 && echo mine > k7/summary.json", "post", "results.h5 -o k7 --force", page},
-        {"mkdir k9 && echo mine > k9/report.html", "fit", "compression sound/fit.cfg -o k9 --force", page},
     };
     ASSERT_ALL_HARMLESS(state, list);
 }
@@ -191,10 +181,6 @@ static void strange_files_in_a_run_folder_stay(void **state) {
         {"mkdir s2.h5.run && echo mine > s2.h5.run/base.h5", "solve", "model.h5 -o s2.h5 --force",
          "was not made by softfall"},
         {"echo mine > s3.h5.run", "solve", "model.h5 -o s3.h5 --force", "cannot be opened: "},
-        {"mkdir -p f2/runs && echo mine > f2/runs/a.cfg", "fit", "drop fit.cfg -o f2 --force",
-         "was not made by softfall"},
-        {"mkdir -p f3/simulation && echo mine > f3/simulation/test-1.cfg", "fit",
-         "compression sound/fit.cfg -o f3 --force --simulate good.cfg", "was not made by softfall"},
     };
     ASSERT_ALL_HARMLESS(state, list);
 }

@@ -35,17 +35,6 @@ static void what_a_study_cannot_judge_is_refused(void **state) {
     for (size_t k = 0; k < sizeof sets / sizeof *sets; k++)
         expect(program_run(p, "pre", "'%s' -o none %s --set '%s'", series, program_coarse(20), sets[k].set),
                sets[k].words);
-    program_write_text(
-        p, "fit.cfg",
-        "name = \"foam\"; material = \"foam.cfg\"; drops = ( { name = \"one\"; case = \"series.cfg\"; "
-        "a_max_g = 90.0; a_max_sd = 0.01; } );");
-    program_shell(
-        p,
-        "cp '%s' foam.cfg && cp '%s' . && sed -e 's|\\.\\./\\.\\./geo|%s|' -e 's|\\.\\./materials/||' '%s' > "
-        "series.cfg",
-        fixture_source("examples/materials/eva35.cfg"), fixture_source("examples/materials/eva35.csv"),
-        fixture_source("geo"), fixture_source(EXAMPLE));
-    expect(program_run(p, "fit", "drop fit.cfg -o none"), "say which of them it is by its number");
     assert_int_equal(program_shell(p, "test -e none").code, 1);
 }
 
