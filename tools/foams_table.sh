@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Fits the library of examples/foams with what each foam predicts without having been fitted to it, and every form of the loading
-# curve to every foam of examples/data that was pressed, into out/foams, and prints the tables of docs/foams.md: the library,
-# measured curves against each other, loading, loops, rates.
+# curve to every foam of examples/data that was pressed, into out/foams, and prints tables: the library, measured
+# curves against each other, loops, the free curve, loading, predictions, rates. docs/foams.md has the first and the last three.
 #
 #     tools/foams_table.sh                  100 s of processor time
 #     tools/foams_table.sh --docs           the same, and writes the tables into docs/foams.md
@@ -290,9 +290,10 @@ if sys.argv[2] == "--materials":
     sys.exit()
 first, refused = loading()
 last, refused_rates = rates()
-for table in (compared(), first, loops(), free_curve(), predicted(), last):
+on_page = (first, predicted(), last)
+for table in (compared(), loops(), free_curve(), *on_page):
     print("\n".join(table) + "\n")
-    if sys.argv[2] == "--docs":
+    if sys.argv[2] == "--docs" and table in on_page:
         replace_table(DOCUMENT, table)
 print("\n".join(["no curve:"] + refused + refused_rates))
 PYTHON

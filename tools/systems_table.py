@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Prints a table that compares the same drops computed on two systems, each a folder of DIR/NAME/summary.json.
 
-    python3 tools/systems_table.py [--table | --docs] FIRST SECOND
+    python3 tools/systems_table.py FIRST SECOND
 
-FIRST and SECOND have the names of the releases. --docs instead replaces the table in docs/systems.md that begins with
-"| drop on two systems |". Exit code 1 if a_max or HIC of a drop differs by more than 0.5 %.
+FIRST and SECOND have the names of the releases. Exit code 1 if a_max or HIC of a drop differs by more than 0.5 %.
 """
 import glob
 import os
 import sys
 
-from results_table import read_summary, replace_table
+from results_table import read_summary
 
 LIMIT_PERCENT = 0.5
-DOCUMENT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../docs/systems.md")
 
 
 def percent(a, b):
@@ -21,7 +19,7 @@ def percent(a, b):
 
 
 def main():
-    arguments = [a for a in sys.argv[1:] if not a.startswith("--")]
+    arguments = sys.argv[1:]
     if len(arguments) != 2:
         sys.exit(__doc__)
     first, second = arguments
@@ -42,11 +40,7 @@ def main():
                      "%+.3f" % change[0], "%.2f" % a["hic"], "%.2f" % b["hic"], "%+.3f" % change[1]))
     if len(rows) == 2:
         sys.exit("systems_table: no drop in %s: run tools/compare_systems.sh first" % first)
-    table = ["| " + " | ".join(row) + " |" for row in rows]
-    if "--docs" in sys.argv:
-        replace_table(DOCUMENT, table)
-    else:
-        print("\n".join(table))
+    print("\n".join("| " + " | ".join(row) + " |" for row in rows))
     if not worst <= LIMIT_PERCENT:
         sys.exit("systems_table: a figure differs by %.2f %%, more than %g %%" % (worst, LIMIT_PERCENT))
 
