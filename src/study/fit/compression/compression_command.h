@@ -7,7 +7,3 @@
  * `log`: gets the summary, NULL: nobody; `sink`: gets warnings, NULL: nobody. */
 sf_status sf_compression_command(const char *path, const char *directory, bool force, FILE *log,
                                  const sf_sink *sink, sf_error *err);
-
-/* Runs `softfall-fit compression FIT.cfg -o DIR` and returns the exit code; argv[0] is the name of the
- * program. */
-int sf_fit_compression_main(int argc, char **argv);
