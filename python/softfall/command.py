@@ -34,7 +34,6 @@ COMMANDS = {  # module within the package, and what the command does
     "serve": ("serve", "answer requests for drops over HTTP, by the protocol of UM-Bridge"),
 }
 PROGRAMS = {  # words that are handed over to the program softfall-WORD, and what it does
-    "batch": "run a group of a batch, as an engine (Snakemake, Slurm) starts it",
     "new": "make a folder with a case that runs as it stands",
     "post": "compute figures and curves from results.h5",
     "pre": "build the model of a drop from a case",

@@ -466,11 +466,11 @@ class Average:
         told = [drop.sd[KINDS[k].key] for drop in self.first.problem.measured if KINDS[k].key in drop.sd]
         return math.sqrt(float(np.mean(np.square(told)))) if told else KINDS[k].sd
 
-    def quantile(self, d: int, k: int, scatter: float | None = None, model: int | None = None) -> Array:
-        """Returns the quantiles TAIL of what is measured of a drop, or of a single pad and drop with their scatter, by one model or by all; NaN: not defined."""
+    def quantile(self, d: int, k: int, scatter: float | None = None, models: Array | None = None) -> Array:
+        """Returns the quantiles TAIL of what is measured of a drop, or of a single pad and drop with their scatter, by some models or by all; NaN: not defined."""
         values, known = self.values[d, k], ~np.isnan(self.values[d, k])
-        if model is not None:
-            known &= self.model_of == model
+        if models is not None:
+            known &= np.isin(self.model_of, models)
         if not known.any():
             return np.full(len(TAIL), math.nan)
         random = np.random.default_rng(self.seed + d)
@@ -531,12 +531,13 @@ class Average:
         return {"seed": self.seed, "criteria_reached": not self.warnings(), "warnings": self.warnings(), "weights_by": "leave-one-out predictive density", "models": models, "predictions": predictions}
 
     def _by_model(self, d: int, k: int) -> list[dict[str, Any]]:
-        """Returns the interval of each model that has a weight."""
+        """Returns the interval of each model that has a weight, and that of all others."""
         made = []
         for m, label in enumerate(self.labels):
-            q = self.quantile(d, k, None, m)
-            if not math.isnan(q[2]):
-                made.append({"model": label, **{key: nine_digits(value) if math.isfinite(value) else None for key, value in zip(("low90", "median", "high90"), q[1:4])}})
+            own, rest = self.quantile(d, k, None, np.array([m])), self.quantile(d, k, None, np.delete(np.arange(len(self.labels)), m))
+            if not math.isnan(own[2]):
+                told = {"low90": own[1], "median": own[2], "high90": own[3], "without_low90": rest[1], "without_high90": rest[3]}
+                made.append({"model": label, **{key: nine_digits(value) if math.isfinite(value) else None for key, value in told.items()}})
         return made
 
     def page(self) -> dict[str, Any]:
