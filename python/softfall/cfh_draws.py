@@ -27,12 +27,13 @@ RESPONSES = ("a_max", "HIC", "a_max_sd", "HIC_sd")
 
 
 class Draw(NamedTuple):
-    """A draw of the foam: its file, its values, the errors of its responses, and the form of its curve ("": not stated)."""
+    """A draw of the foam: its file, its values, the errors of its responses, the form of its curve ("": not stated), and whether the accelerometer's mount differs among the draws."""
 
     path: str
     values: dict[str, str]
     response: tuple[float, ...] | None
     form: str
+    mount: bool = False  # it was an unknown of the fit, and its effect is in the response
 
 
 def _flat(settings: Sequence[Mapping[str, Any]], before: str = "") -> dict[str, str]:
@@ -72,7 +73,8 @@ def read(folder: Path, case: Case, sets: Mapping[str, str]) -> list[Draw]:
     for number in numbers:
         path = folder / f"draw-{number:03d}.cfg"
         values = _flat(memory.settings(str(path))["value"])
-        said = re.search(r"Draw (\d+) of", path.read_text(encoding="utf-8", errors="replace")[:300])
+        head = path.read_text(encoding="utf-8", errors="replace")[:1000]
+        said, form = re.search(r"Draw (\d+) of", head), re.search(r"^# Form of the curve: (.*)\.$", head, re.MULTILINE)
         response = tuple(float(values.get(f"response_error.{key}", "nan")) for key in RESPONSES)
         own = case["material.law"] or "low_density_foam"
         law, density = values.get("law", "low_density_foam"), values.get("density", "")
@@ -88,7 +90,8 @@ def read(folder: Path, case: Case, sets: Mapping[str, str]) -> list[Draw]:
         curve = values.get("curve")
         if curve and (path.parent / curve).is_file():
             values["curve"] = (path.parent / curve).read_text(encoding="utf-8", errors="replace")
-        draws.append(Draw(str(path), values, response if stated else None, forms.get(int(said[1]) if said else number, "")))
+        draws.append(Draw(str(path), values, response if stated else None, form[1] if form else forms.get(int(said[1]) if said else number, ""),
+                          "# The accelerometer's mount was an unknown" in head))
     if all(_foam(draw) == _foam(draws[0]) for draw in draws):
         raise InputError(f"{where}: all {len(draws)} draws are the same material")
     return draws

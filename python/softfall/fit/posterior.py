@@ -595,7 +595,8 @@ class Average:
             name, p = f"draw-{number:03d}", one.problem
             foam = p.model.form.foam(p.foam_values(one.draws.x[s, :-2]))
             foam.bend(BENDS, errors.bend)
-            foam.write(folder, name, f"Draw {number} of {OUTPUT_DRAWS} of a posterior of softfall fit, equally likely.", "")
+            mount = "The accelerometer's mount was an unknown of the fit.\n" if p.chain else ""
+            foam.write(folder, name, f"Draw {number} of {OUTPUT_DRAWS} of a posterior of softfall fit, equally likely.", f"Form of the curve: {self.labels[m]}.\n{mount}")
             lines = "".join(f"    {kind.error} = {errors.shared[k]:.12g}; {kind.error}_sd = {errors.own_sd[k]:.12g};\n" for k, kind in enumerate(KINDS))
             write(f"{folder}/{name}.cfg", read(f"{folder}/{name}.cfg") + "# Errors of ln(number) of a drop beside the foam: one that all drops share, and the standard deviation of each drop's "
                   f"own.\nresponse_error = {{\n{lines}}};\n")
