@@ -559,7 +559,7 @@ static void edges_of_flat_missiles_split_cells(void **state) {
         for (int64_t f = 0; f < top->face_count; f++) {
             double side = fabs(mesh.position[3 * (int64_t)top->face[4 * f + 2]] -
                                mesh.position[3 * (int64_t)top->face[4 * f + 3]]);
-            shortest = fmin(shortest, side);
+            shortest = smaller(shortest, side);
             length += side;
         }
         assert_close(length, 0.1, 1e-12);

@@ -45,7 +45,6 @@ ALLOWED = {
     "solver/run/output": {"remove": "its own partial files"},
     "programs/softfall-solve": {"remove": "results and checkpoint of an earlier run, with --force"},
     "programs/softfall-new": {"list": "the folder of the examples"},
-    "study/run_folder": {"open": "the folder of a drop, to ask whether a run has it locked"},
     "study/material_file": {"remove": "a material that it has just written and that is refused"},
 }
 
