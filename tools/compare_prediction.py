@@ -4,13 +4,14 @@
 
     tools/compare_prediction.py [PAGE.md]
 
-Reads fit.json of out/eva35 (the drops on 70 mm) and out/eva35_four (with the drop on 50 mm at 4.5 m/s), out/cfh50/cfh.json and
+Reads fit.json of out/eva35 (the drops on 70 mm) and, where it is there, out/eva35_four (with the drop on 50 mm at 4.5 m/s), out/cfh50/cfh.json and
 out/cfh70/cfh.json (tools/identify_examples.sh makes them) and examples/data, and prints the tables, or writes them into the page in place of
 those between `<!-- comparison by softfall fit -->` and `<!-- end -->`.
 """
 import csv
 import json
 import math
+import os
 import sys
 
 MARK = "<!-- comparison by softfall fit -->\n"
@@ -38,17 +39,17 @@ def interval(form, p):
 
 
 def drops():
-    three, four = predictions("eva35"), predictions("eva35_four")
-    yield "| drop | quantity | measured | median | 90 % | width | holds it | without any one form | with eva50-v4.5 in the fit: 90 % | width | holds it |"
-    yield "|---|---|---:|---:|---:|---:|---|---:|---:|---:|---|"
+    three, four = predictions("eva35"), predictions("eva35_four") if os.path.exists("out/eva35_four/fit.json") else None
+    yield "| drop | quantity | measured | median | 90 % | width | holds it | without any one form |" + " with eva50-v4.5 in the fit: 90 % | width | holds it |" * (four is not None)
+    yield "|---|---|---:|---:|---:|---:|---|---:|" + "---:|---:|---|" * (four is not None)
     for row in read("examples/data/penta2018_table2_50mm.csv"):
         drop = "eva50-v" + row["v_test_m_s"]
         for name, key, real, form in ROWS:
-            p, after = three[drop, key], four.get((drop, key))
+            p, after = three[drop, key], four.get((drop, key)) if four else None
             measured = float(row[real]) if real else float(row["t_f_ms"]) - float(row["t_i_ms"])
             without = all(holds(measured, one, "without_") for one in p["by_model"])
             cells = [drop, name, form % measured, form % p["median"], *interval(form, p), "yes" if holds(measured, p) else "**no**", "yes" if without else "no"]
-            cells += [*interval(form, after), "yes" if holds(measured, after) else "**no**"] if after else ["fitted", "", ""]
+            cells += [] if four is None else [*interval(form, after), "yes" if holds(measured, after) else "**no**"] if after else ["fitted", "", ""]
             yield "| " + " | ".join(cells) + " |"
 
 
