@@ -120,17 +120,22 @@ static void peak_is_that_of_fine_steps(void **state) {
     }
 }
 
+static sf_foam linear_foam(double modulus) {
+    point_card card;
+    sf_foam foam;
+    point_card_init(&card);
+    point_card_add_line(&card, modulus, 0.9);
+    foam_build(&card, &foam);
+    return foam;
+}
+
 /* On a linear foam k = E/H the mass swings: peak = 1 + sqrt(1 + 2 h k/(p)) of its weight p. */
 static void peak_on_a_linear_foam_is_that_of_a_spring(void **state) {
     (void)state;
-    point_card card;
-    sf_foam foam;
+    sf_foam foam = linear_foam(0.3e6);
     double peak;
     sf_error err = SF_ERROR_INIT;
     const sf_cushion c = {.static_stress = 2e3, .thickness = 0.05, .height = 0.4};
-    point_card_init(&card);
-    point_card_add_line(&card, 0.3e6, 0.9);
-    foam_build(&card, &foam);
     const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
     assert_int_equal(sf_cushion_peak(&c, &law, &peak, &err), SF_OK);
     assert_relative(peak, 1 + sqrt(1 + 2 * c.height * 0.3e6 / c.thickness / c.static_stress), 1e-3);
@@ -140,13 +145,9 @@ static void peak_on_a_linear_foam_is_that_of_a_spring(void **state) {
 /* Beyond what the foam bears, one sentence. */
 static void collapse_is_told(void **state) {
     (void)state;
-    point_card card;
-    sf_foam foam;
+    sf_foam foam = linear_foam(1e4);
     double peak;
     sf_error err = SF_ERROR_INIT;
-    point_card_init(&card);
-    point_card_add_line(&card, 1e4, 0.9);
-    foam_build(&card, &foam);
     const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
     const sf_cushion heavy = {.static_stress = 1e10, .thickness = 0.07, .height = 2}, none = {.static_stress = 1e3, .thickness = 0.07};
     assert_int_equal(sf_cushion_peak(&heavy, &law, &peak, &err), SF_ERR_NUMERIC);

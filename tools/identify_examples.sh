@@ -3,8 +3,8 @@
 # Identifies the EVA foam of the paper from its three drops on the 70 mm pad by all models of examples/fit/eva35_forms.cfg, and from these and
 # the drop on the 50 mm pad at 4.5 m/s (eva35_four.cfg); predicts the other drops on the 50 mm pad and the critical fall heights of both pads, and
 # writes the draws of the foam that the examples use, the table and picture of docs/cfh.md, and the comparison of docs/validation.md. The material
-# of the examples, examples/materials/eva35.cfg, stays: the drop fit of version 1.2 in C made it. About 20 minutes on two cores; run it again to
-# resume after an interruption.
+# of the examples, examples/materials/eva35.cfg, stays: the drop fit of version 1.1 in C made it. Run it again to resume after an
+# interruption.
 #
 #     tools/identify_examples.sh
 set -euo pipefail

@@ -79,7 +79,7 @@ def answer(s: Study) -> list[str]:
         mounted = all(draw.mount for draw in s.spread.draws)
         included += ["the mount of the accelerometer"] * mounted
         left_out = [*same, *["errors of the responses, which the draws do not state"] * (s.spread.draws[0].response is None),
-                    *["the mesh, whose error is not known"] * math.isnan(s.spread.mesh_error), *["the mount of the accelerometer"] * (not mounted)]
+                    *["the mesh, whose error is not known"] * math.isnan(s.spread.mesh_error), *["the mount of the accelerometer but for what the draws hold of it"] * (not mounted)]
         said.append(f"Included: {', '.join(included)}. Not included: {'; '.join([*left_out, 'single pads and drops'])}")
         form = cfh_draws.lowest_form(s.spread, s.spread.parts[cfh_draws.PARTS[2]].at_least)
         said.append(f"The lowest draws have the form {form}" if form else "The draws do not state the form of their curve: posterior.csv of softfall fit beside their folder does")

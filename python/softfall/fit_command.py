@@ -10,6 +10,7 @@ from typing import Callable
 
 import numpy as np
 
+from . import output as output_files, settings
 from .command import Parser, say
 from .errors import InputError, NumericError
 from .fit import files, input as fit_input, page
@@ -48,6 +49,9 @@ def _begin(o: argparse.Namespace) -> tuple[Input, Path]:
     there = [name for name in (*FILES, f"{given.name}.cfg") if (folder / name).exists()]
     if there and not o.force:
         raise InputError(f"{folder} already holds {there[0]}: give another directory, or --force to replace it")
+    curves = (f"{given.name}{end}" for end in (".cfg", ".csv", *(f"-{k}.csv" for k in range(1, 9))))
+    draws = (f"posterior/{path.name}" for path in (folder / "posterior").glob("draw-*"))
+    output_files.check_all(folder, (*FILES, *STALE, "drops.sqlite", *curves, *draws), settings.files(names[0]))
     return given, folder
 
 

@@ -12,7 +12,7 @@ import stat
 import tempfile
 import tomllib
 from pathlib import Path
-from typing import Any, Iterator, NoReturn
+from typing import Any, Iterable, Iterator, NoReturn, Sequence
 
 from .errors import Error, InputError
 
@@ -81,6 +81,13 @@ def check_page(path: Path) -> None:
     """Refuses to replace a page that is not of softfall; it may be absent or empty."""
     if path.is_file() and path.stat().st_size and b"softfall" not in read(path, 1 << 30):
         raise InputError(f"{path} is not of softfall, and is not replaced: give another directory")
+
+
+def check_all(folder: Path, names: Iterable[str], inputs: Sequence[str | os.PathLike[str]]) -> None:
+    """Checks the names of the outputs of a command in its folder, and that a report.html there is of softfall."""
+    for name in names:
+        check(folder / name, *inputs)
+    check_page(folder / "report.html")
 
 
 def write(path: str | os.PathLike[str], content: str | bytes, *inputs: str | os.PathLike[str]) -> None:

@@ -2,13 +2,14 @@
 """Settings of a file in the syntax of a case, each with its place, and sentences about them."""
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 from pathlib import Path
 from typing import Any, NoReturn, Sequence
 
 from . import memory
-from .errors import InputError
+from .errors import Error, InputError
 
 
 class Setting:
@@ -114,3 +115,21 @@ def read(path: str | os.PathLike[str]) -> Setting:
     if "\0" in text:
         raise InputError(f"{text!r} is no name of a file")
     return Setting(memory.settings(text), Path(text).parent)
+
+
+def files(path: str | os.PathLike[str]) -> list[Path]:
+    """Returns a file in the syntax of a case with all files that are there and that it names, and those of the .cfg files among them: what an output must not replace."""
+    found, open_ends = [Path(path)], [Path(path)]
+
+    def take(item: Setting) -> None:
+        source = Path(item.place.rpartition(":")[0])  # an included file has names of its own
+        for named in (source, *(folder / str(item.value).lstrip("@") for folder in (source.parent, item.folder) if item.kind == "text" and "\0" not in str(item.value))):
+            if named.is_file() and named not in found:
+                found.append(named)
+                open_ends.extend([named] * (named.suffix == ".cfg"))
+        for inner in item.items:
+            take(inner)
+    while open_ends:
+        with contextlib.suppress(Error, OSError):
+            take(read(open_ends.pop()))
+    return found

@@ -29,7 +29,7 @@ enum { SF_FEW_NODES = 50000, SF_FEW_POINTS = 3000 };
 #define SF_BY_ALL_THREADS(worth, call)                                                                       \
     do {                                                                                                     \
         const bool many = worth;                                                                             \
-        if (omp_get_max_threads() > 1 || omp_get_level() > 0) {                                                \
+        if (omp_get_max_threads() > 1 || omp_get_level() > 0) {                                              \
             _Pragma("omp parallel if (many)") call;                                                          \
         } else                                                                                               \
             call;                                                                                            \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reading of one setting of each kind of key, and of the group response_error of a material, which belongs to
- * no law: softfall-fit drop writes it into the draws of a posterior, `softfall cfh` uses it, the other
+ * no law: softfall fit writes it into the draws of a posterior, `softfall cfh` uses it, the other
  * programs check it and leave it. Internal to src/case. */
 #pragma once
 #include "case/reader.h"

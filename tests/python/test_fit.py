@@ -7,6 +7,7 @@ import json
 import math
 import os
 import re
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -216,6 +217,8 @@ def test_a_bend_of_the_whole_curve_is_a_scale_of_its_stress(lab: Path, tmp_path:
     foams[0].bend([0.5], [0.0])
     foams[1].bend([0.2, 0.4], [0.1, 0.3])
     (_, strain, stress), (_, _, bent) = foams[0].curves[0], foams[1].curves[0]
+    with pytest.raises(softfall.InputError, match="at 1 strain or more"):
+        foams[1].bend([], [])
     assert len(strain) > 100 and bent[1:] / stress[1:] == pytest.approx(np.exp(np.interp(strain[1:], [0.2, 0.4], [0.1, 0.3])), rel=1e-12)
     with Bench(given, tmp_path, 1, lambda text: None) as bench:
         problem = Problem(given, given.models[0], bench)
@@ -237,6 +240,30 @@ def test_cushion_curves_alone(tmp_path: Path) -> None:
     for mine, theirs in zip(told["cushions"], reference["cushions"]):
         assert mine["peak_g"] == pytest.approx(theirs["peak_g"], rel=0.01)
     assert softfall.Case(ROOT / "examples/eva50-axisymmetric/case.cfg", {"material": f"@{tmp_path / 'out/pe.cfg'}"})["material.density"]
+
+
+def test_a_posterior_needs_no_drops(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(posterior, "USUAL", posterior.Effort(first=40, second=10, draws=20, rounds=2, steps=300, burn=100))
+    (tmp_path / "pe.cfg").write_text(polyethylene().replace("posterior = false;", ""))
+    run(tmp_path / "pe.cfg", "-o", tmp_path / "out", "-j", 1)
+    told = json.loads((tmp_path / "out/fit.json").read_text())["inference"]
+    assert not told["predictions"] and told["models"][0]["simulated_draws"] == 20 and len(list((tmp_path / "out/posterior").glob("draw-*.cfg"))) == 200
+
+
+@pytest.mark.parametrize("made, said", [
+    ("cp fit.cfg found.cfg", "would replace an input"), ("cp start.cfg found.csv; sed -i s/start.cfg/found.csv/ fit.cfg", "would replace an input"),
+    ("mkdir posterior; sed s:start.cfg:../start.cfg: slow.cfg > posterior/draw-001.cfg; sed -i s:slow.cfg:posterior/draw-001.cfg: fit.cfg", "would replace an input"),
+    ("echo mine > report.html", "is not of softfall, and is not replaced"), ("ln -s /dev/null found.cfg", "it is no plain file"), ("mkdir fit.json", "it is a folder")])
+def test_no_input_and_no_file_of_somebody_else_is_replaced(lab: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: str, said: str) -> None:
+    for name in ("fit.cfg", "start.cfg", "start.csv", "slow.cfg", "fast.cfg", "other.cfg"):
+        (tmp_path / name).write_bytes((lab / name).read_bytes())
+    monkeypatch.chdir(tmp_path)
+    subprocess.run(["sh", "-c", made], cwd=tmp_path, check=True)
+    source = "found.cfg" if made.startswith("cp fit.cfg") else "fit.cfg"
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file() and not path.is_symlink()}
+    refused = command_here("fit", source, "-o", ".", "--force")
+    assert refused.returncode == 2 and said in refused.stderr, refused.stderr
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file() and not path.is_symlink()} == before
 
 
 def test_points_of_a_compression_test_are_clear_of_its_ends() -> None:

@@ -197,6 +197,17 @@ def test_files_are_written_and_weak_results_marked(lab: Path, monkeypatch: pytes
     assert "these tests do not determine it  modulus" in material and "bound" in found["parameters"][1] and f"at its {found['parameters'][1]['bound']} bound" in material
 
 
+@pytest.mark.parametrize("fit_name, test_name", [("material.cfg", "t.csv"), ("fit.cfg", "fit.csv"), ("fit.cfg", "material-1.csv")])
+def test_no_input_is_replaced(lab: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fit_name: str, test_name: str) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path(test_name).write_bytes((lab / "t.csv").read_bytes())
+    Path(fit_name).write_text(f'density = "35 kg/m3"; curve_form = "gas"; tests = ( {{ file = "{test_name}"; rate = "0.01 1/s"; }} );\n')
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    refused = command_here("fit", "compression", fit_name, "-o", ".", "--force")
+    assert refused.returncode == 2 and "would replace an input" in refused.stderr
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
 def test_the_free_curve_is_that_of_softfall_fit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     config = "examples/fit/compression/fit.cfg"

@@ -61,6 +61,7 @@ def run(options: argparse.Namespace, tell: Callable[[str], None] = say) -> int:
     there = [name for name in FILES if (folder / name).exists()]
     if there and not o.force:
         raise InputError(f"{folder} already holds {there[0]}: give another directory, or --force to replace it")
+    output_files.check_all(folder, (*FILES, *STALE), settings.files(o.input))
     with output_files.scratch() as scratch:  # a failure leaves the earlier files as they are
         page = _fit(o.input, scratch, tell)
         report.write_page(page, scratch, f"softfall fit compression {library.version()}, {o.input}")

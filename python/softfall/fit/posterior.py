@@ -25,7 +25,7 @@ from ..array import Array
 from ..errors import NumericError
 from ..memory import nine_digits
 from .drops import COARSE, OWN
-from .input import KINDS
+from .input import CHAIN, KINDS
 from .search import Found, Problem, shift_of
 from .work import BENDS
 
@@ -202,7 +202,7 @@ class Posterior:
     # ---- densities
 
     def prior(self, x: Array) -> Array:
-        """Returns ln of the prior density on the axes of the search, and of kappa."""
+        """Returns ln of the prior density on the axes of the search, and of kappa and tau."""
         p, foam, sizes = self.problem, x[:, :-2], x[:, -2:]
         made = -0.5 * (((p.logarithm(foam) - p.center) / p.sd) ** 2).sum(axis=1) + np.log(np.maximum(p.log_slope(foam), 1e-300)).sum(axis=1)
         made += (sizes - 0.5 * (np.exp(np.minimum(sizes, 5.0)) / (KAPPA, TAU)) ** 2).sum(axis=1)
@@ -244,7 +244,7 @@ class Posterior:
             tests = p.tests(x[s, :-2])
             rest[s] += float(tests @ tests)
         p.offset = saved
-        return Simulated(x, np.array(response), np.array(failed), rest, by_chain)
+        return Simulated(x, np.array(response).reshape(by_chain.shape), np.array(failed, dtype=bool).reshape(count, len(x)), rest, by_chain)
 
     def exact(self, of: Simulated) -> Array:
         """Returns ln of the likelihood of simulated points."""
@@ -532,12 +532,12 @@ class Average:
 
     def _by_model(self, d: int, k: int) -> list[dict[str, Any]]:
         """Returns the interval of each model that has a weight, and that of all others."""
-        made = []
+        made: list[dict[str, Any]] = []
         for m, label in enumerate(self.labels):
             own, rest = self.quantile(d, k, None, np.array([m])), self.quantile(d, k, None, np.delete(np.arange(len(self.labels)), m))
             if not math.isnan(own[2]):
                 told = {"low90": own[1], "median": own[2], "high90": own[3], "without_low90": rest[1], "without_high90": rest[3]}
-                made.append({"model": label, **{key: nine_digits(value) if math.isfinite(value) else None for key, value in told.items()}})
+                made.append({"model": label} | {key: nine_digits(value) if math.isfinite(value) else None for key, value in told.items()})
         return made
 
     def page(self) -> dict[str, Any]:
@@ -595,7 +595,7 @@ class Average:
             name, p = f"draw-{number:03d}", one.problem
             foam = p.model.form.foam(p.foam_values(one.draws.x[s, :-2]))
             foam.bend(BENDS, errors.bend)
-            mount = "The accelerometer's mount was an unknown of the fit.\n" if p.chain else ""
+            mount = "The accelerometer's mount was an unknown of the fit.\n" if any(CHAIN[k].startswith("mount") for k in p.chain) else ""
             foam.write(folder, name, f"Draw {number} of {OUTPUT_DRAWS} of a posterior of softfall fit, equally likely.", f"Form of the curve: {self.labels[m]}.\n{mount}")
             lines = "".join(f"    {kind.error} = {errors.shared[k]:.12g}; {kind.error}_sd = {errors.own_sd[k]:.12g};\n" for k, kind in enumerate(KINDS))
             write(f"{folder}/{name}.cfg", read(f"{folder}/{name}.cfg") + "# Errors of ln(number) of a drop beside the foam: one that all drops share, and the standard deviation of each drop's "
