@@ -76,7 +76,7 @@ static void defaults_are_those_of_the_table(void **state) {
     assert_false(c.symmetry_given);
     assert_string_equal(c.symmetry_group[1], "symmetry_y");
     assert_string_equal(c.surface_group, "missile_surface");
-    assert_true(c.support_ratio == 1.4 && c.run.stabilisation == 0.1 && c.run.step_safety == 0.95);
+    assert_true(c.support_ratio == 1.4 && c.run.stabilisation == 0.1 && c.run.step_safety == 0.97);
     assert_true(foam->hysteresis_hu == 1.0 && foam->damp_length == 0.0 && foam->maxwell_modulus == 0.0);
     assert_true(foam->tension_cutoff >= 1e30 && isfinite(foam->tension_cutoff));
     assert_true(c.missile_card.direction[2] == -1.0);

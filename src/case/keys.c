@@ -172,7 +172,7 @@ static const sf_key keys[] = {
     /* solver */
     {"solver", "end_time", SF_KEY_QUANTITY, NULL, AT(run.end_time),
      "latest end of the run, at least 3 step_limit", .quantity = SF_TIME, .low = 1e-9, .high = 1e3},
-    {"solver", "step_safety", SF_KEY_NUMBER, "0.95", AT(run.step_safety),
+    {"solver", "step_safety", SF_KEY_NUMBER, "0.97", AT(run.step_safety),
      "time step as a fraction of the stability limit", .low = 1e-3, .high = 1.0},
     {"solver", "step_limit", SF_KEY_QUANTITY, "\"50 us\"", AT(run.step_limit),
      "largest time step; every step is recorded, at 20 kHz or more, twice what CFC 1000 needs", .quantity = SF_TIME, .low = 1e-12, .high = 50e-6},
