@@ -20,7 +20,7 @@ static void body_alloc(body *b, int64_t nodes, int64_t triangles) {
     assert_int_equal(err.status, SF_OK);
 }
 
-void body_build(body *b, double reach, sf_missile_surface *out) {
+void body_build(body *b, double reach, sf_body *out) {
     sf_error err = SF_ERROR_INIT;
     b->spacing = reach;
     b->model.contact_count = 1;
@@ -31,12 +31,12 @@ void body_build(body *b, double reach, sf_missile_surface *out) {
     b->model.surface_triangle_count = b->surface.triangle_count;
     b->model.surface_position = b->surface.position;
     b->model.surface_triangle = b->surface.triangle;
-    assert_int_equal(sf_missile_surface_build(&b->model, b->model.missile.direction, out, &err), SF_OK);
+    assert_int_equal(sf_body_of_missile(&b->model, out, &err), SF_OK);
 }
 
-void body_free(body *b, sf_missile_surface *s) {
+void body_free(body *b, sf_body *s) {
     if (s)
-        sf_missile_surface_free(s);
+        sf_body_free(s);
     free(b->surface.position);
     free(b->surface.triangle);
 }

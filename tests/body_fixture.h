@@ -4,9 +4,9 @@
 #define SF_TESTS_BODY_FIXTURE_H
 
 #include "pre/mesh/mesh.h"
-#include "solver/contact/rigid_surface.h"
+#include "solver/contact/shapes.h"
 
-/* A surface and the model around it that sf_missile_surface_build reads. */
+/* A surface and the model around it that sf_body_of_missile reads. */
 typedef struct body {
     sf_surface surface;
     sf_model model;
@@ -25,8 +25,8 @@ void body_spike(body *b, int slivers, bool mirrored);
 
 /* The solver's surface of the body with the given reach; release both with body_free (surface may be
  * NULL). */
-void body_build(body *b, double reach, sf_missile_surface *out);
-void body_free(body *b, sf_missile_surface *surface);
+void body_build(body *b, double reach, sf_body *out);
+void body_free(body *b, sf_body *surface);
 
 double *body_node(body *b, int64_t i);
 /* Unit normal of triangle t. */

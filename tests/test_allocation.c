@@ -69,11 +69,11 @@ static void a_step_allocates_nothing(void **state) {
         if (step == FIRST_STEPS)
             allocations = 0;
         fixture_advance(&f);
-        renewals += step >= FIRST_STEPS && f.state.self_room > room;
-        room = f.state.self_room;
+        renewals += step >= FIRST_STEPS && f.state.skin.room > room;
+        room = f.state.skin.room;
         for (int64_t p = 0; p < f.operators.skin.count; p++)
-            if (!(fabs(f.state.self_force[3 * p]) <= largest))
-                largest = fabs(f.state.self_force[3 * p]);
+            if (!(fabs(f.state.skin.force[3 * p]) <= largest))
+                largest = fabs(f.state.skin.force[3 * p]);
     }
     print_message("%d renewals of the candidates, force up to %.3g N\n", renewals, largest);
     assert_int_equal(allocations, 0);

@@ -104,7 +104,7 @@ static void a_sliding_block_comes_to_rest(void **state) {
 /* A pull of `slope` times the weight along x, on every node. */
 static void tilt(fixture *f, double slope) {
     const sf_model *m = &f->model;
-    sf_anvil *a = &f->operators.anvil;
+    sf_weight *a = &f->operators.weight;
     double(*pull)[3] = calloc((size_t)m->node_count, sizeof *pull);
     int32_t *node = malloc((size_t)m->node_count * sizeof *node);
     assert_true(pull && node);
@@ -133,7 +133,7 @@ static void below_the_friction_angle_it_sticks_and_above_it_slides(void **state)
         resting_centre(&f, place);
         for (int64_t c = f.model.contact_count; c < sf_model_points(&f.model); c++) {
             int64_t node = sf_model_point_node(&f.model, c);
-            slip = larger(slip, fabs(f.state.contact_position[3 * c] - f.model.position[3 * node]));
+            slip = larger(slip, fabs(f.state.contact.position[3 * c] - f.model.position[3 * node]));
         }
         double t = f.state.time, slides = 0.5 * fmax(0, slopes[k] - friction) * G * t * t;
         if (k == 0) {
@@ -206,10 +206,10 @@ static balance momenta(const fixture *f) {
 /* Impulses of this step on the pad, by point. */
 static void add_impulses(const fixture *f, balance *b) {
     const sf_state *s = &f->state;
-    const sf_anvil *a = &f->operators.anvil;
+    const sf_weight *a = &f->operators.weight;
     double dt = 0.5 * (s->dt + s->dt_old), x[3];
     for (int64_t c = 0; c < sf_model_points(&f->model); c++)
-        add_moment(b, &s->contact_position[3 * c], &s->contact_force[3 * c], dt);
+        add_moment(b, &s->contact.position[3 * c], &s->contact.force[3 * c], dt);
     for (int64_t k = 0; k < a->count; k++) {
         place_of(f, a->node[k], x);
         add_moment(b, x, a->pull[k], dt);
@@ -244,7 +244,7 @@ static void a_rocking_pad_conserves_momentum_with_the_anvil(void **state) {
         }
         sf_step_advance(m, s);
         for (int64_t c = m->contact_count; c < sf_model_points(m); c++)
-            highest = larger(highest, s->contact_position[3 * c + 2]);
+            highest = larger(highest, s->contact.position[3 * c + 2]);
     }
     assert_true(fewest <= m->rest_count / 2 && most_after > fewest); /* lifts off, comes back */
     assert_true(highest > 5e-4);
@@ -265,7 +265,7 @@ static void the_reach_is_that_of_the_top(void **state) {
     for (int64_t k = 0; k < f.model.rest_count; k++)
         f.model.spacing[f.model.rest_node[k]] = 0.5 * finest;
     fixture_start(&f);
-    assert_true(f.operators.surface.spacing == finest);
+    assert_true(f.operators.contact.spacing == finest);
     fixture_free(&f);
 }
 

@@ -54,18 +54,18 @@ static void pressed_points_lie_on_the_plate_and_free_ones_outside(void **state) 
         fixture_step(&f);
         double travel = s->dt * m->missile.speed, stiffest = 0;
         for (int64_t c = 0; c < m->contact_count; c++)
-            stiffest = larger(stiffest, s->contact_force[3 * c + 2] * -1);
+            stiffest = larger(stiffest, s->contact.force[3 * c + 2] * -1);
         sf_step_advance(m, s);
         double plate = m->surface_position[2] - s->missile.displacement;
         for (int64_t c = 0; c < m->contact_count; c++) {
-            double y[3], p = -s->contact_force[3 * c + 2];
+            double y[3], p = -s->contact.force[3 * c + 2];
             point_position(&f, c, y);
             double gap = plate - y[2];
             assert_true(p >= 0);
             assert_true(gap >= -1e-6 * travel);
             if (p > 0)
                 assert_close(p * gap / (stiffest * travel), 0, 1e-6);
-            assert_true(hypot(s->contact_force[3 * c], s->contact_force[3 * c + 1]) <=
+            assert_true(hypot(s->contact.force[3 * c], s->contact.force[3 * c + 1]) <=
                         1e-9 * stiffest); /* no friction */
             pressed += p > 0;
             free_points += gap > 1e-3 * travel;
@@ -152,9 +152,9 @@ static void check_coulomb(const fixture *f, double (*old)[3], double travel, fri
     double mu = m->missile.friction, step = s->missile.displacement - s->missile.displacement_old,
            strongest = 0;
     for (int64_t c = 0; c < m->contact_count; c++)
-        strongest = larger(strongest, -s->contact_force[3 * c + 2]);
+        strongest = larger(strongest, -s->contact.force[3 * c + 2]);
     for (int64_t c = 0; c < m->contact_count; c++) {
-        const double *q = &s->contact_force[3 * c];
+        const double *q = &s->contact.force[3 * c];
         double y[3], slip[2], p = -q[2], size = hypot(q[0], q[1]);
         assert_true(size <= mu * p * (1 + 1e-9));
         if (p < 1e-3 * strongest)
@@ -237,13 +237,13 @@ static double peak_of(const char *shape, bool all) {
     assert_int_equal(f.model.missile.shape, strstr(shape, "sphere") ? SF_SHAPE_SPHERE : SF_SHAPE_SURFACE);
     while (f.state.time < 0.016) {
         if (all)
-            f.state.contact_room = 0;
+            f.state.contact.room = 0;
         fixture_step(&f);
-        assert_true(all || f.state.step < 1 || f.state.contact_near_count < f.model.contact_count);
+        assert_true(all || f.state.step < 1 || f.state.contact.close_count < f.model.contact_count);
         peak = larger(peak, -f.state.missile.acceleration);
         for (int64_t c = 0; c < f.model.contact_count;
              c++) /* nowhere does the foam pull, at the rim of the contact least */
-            assert_true(sf_dot3(&f.state.contact_force[3 * c], &f.state.contact_normal[3 * c]) >= 0);
+            assert_true(sf_dot3(&f.state.contact.force[3 * c], &f.state.contact.normal[3 * c]) >= 0);
         sf_step_advance(&f.model, &f.state);
     }
     assert_true(-f.state.missile.acceleration < 0.9 * peak); /* past it */

@@ -95,9 +95,9 @@ static void two_bars_exchange_their_speeds(void **state) {
                   high[2], speed, 2e3 * half, 1e3 * twice);
     assert_true(fabs(low[2] + speed) < 0.01 * speed && fabs(high[2]) < 0.01 * speed);
     assert_relative(2 * half, twice, 0.01);
-    assert_true(f.state.self_penetration < 0.01 * block.spacing);
+    assert_true(f.state.skin.depth < 0.01 * block.spacing);
     for (int64_t k = 0; k < 3 * f.operators.skin.count; k++)
-        assert_true(f.state.self_force[k] == 0); /* they have parted */
+        assert_true(f.state.skin.force[k] == 0); /* they have parted */
     fixture_free(&f);
 }
 
@@ -298,7 +298,7 @@ static void a_corner_of_a_slit_sees_the_wall_beyond(void **state) {
             continue;
         walls++;
         for (int k = 0; k < SF_SELF_CANDIDATES; k++) {
-            int32_t facet = f.state.self_candidate[SF_SELF_CANDIDATES * p + k];
+            int32_t facet = f.state.skin.candidate[SF_SELF_CANDIDATES * p + k];
             for (int a = 0; facet >= 0 && a < 3; a++) {
                 const double *y = &skin->rest[3 * (int64_t)skin->facet[3 * facet + a]];
                 sees =
@@ -459,7 +459,7 @@ static double hertz_ratio(const program_place *p, bool two, double fine) {
     while (f.state.time < END) {
         fixture_advance(&f);
         for (int64_t n = 0; n < f.operators.skin.count && f.state.time > RAMP; n++) {
-            const double *x = &f.state.self_position[3 * n], q = 4 * fabs(f.state.self_force[3 * n + 2]);
+            const double *x = &f.state.skin.position[3 * n], q = 4 * fabs(f.state.skin.force[3 * n + 2]);
             if (sf_skin_is_rigid(&f.operators.skin, n) || q == 0)
                 continue;
             force += q;

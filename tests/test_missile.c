@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The missile alone, with forces applied by hand: free fall, momentum, prescribed motion, symmetry. */
+#include "solver/contact/shapes.h"
 #include "solver/missile.h"
 
 #include "base/mat3.h"
@@ -185,8 +186,8 @@ static void the_surface_goes_with_the_pose(void **state) {
     m.missile.shape = SF_SHAPE_SPHERE;
     m.missile.sphere_radius = 0.08;
     m.missile.sphere_cap_cosine = -1;
-    sf_missile_surface surface;
-    assert_int_equal(sf_missile_surface_build(&m, m.missile.direction, &surface, &err), SF_OK);
+    sf_body surface;
+    assert_int_equal(sf_body_of_missile(&m, &surface, &err), SF_OK);
     sf_missile missile;
     sf_missile_begin(&m, &missile);
     missile.displacement = 0.02;
@@ -208,7 +209,7 @@ static void the_surface_goes_with_the_pose(void **state) {
             assert_close(normal[k], r[k] / distance, 1e-14);
         assert_true(sf_missile_near(&m, &missile, &surface, x, 1.001 * fabs(gap)) == (gap > 0 || !ahead));
     }
-    sf_missile_surface_free(&surface);
+    sf_body_free(&surface);
 }
 
 /* A quarter of the missile under a quarter of the force moves as the whole; the whole's figures are four

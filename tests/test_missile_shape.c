@@ -243,7 +243,7 @@ static void triangles_touch_where_their_gap_vanishes(void **state) {
     const double centre[3] = {0.1, 0.2, 0.5};
     sf_missile_card card = {.shape = SF_SHAPE_SURFACE, .direction = {0.48, 0.6, -0.64}};
     body b;
-    sf_missile_surface s;
+    sf_body s;
     uint64_t seed = 28;
     int hits = 0;
     body_ball(&b, 5, 0.3, centre);
@@ -260,9 +260,9 @@ static void triangles_touch_where_their_gap_vanishes(void **state) {
             ahead[k] = foot[k] + 1e-4 * card.direction[k];
         }
         assert_close(body_largest_plane(&b, foot), 0, 1e-12);
-        assert_true(sf_missile_surface_gap(&s, foot, &gap, normal));
+        assert_true(sf_body_gap(&s, foot, &gap, normal));
         assert_close(gap, 0, 1e-12);
-        assert_true(sf_missile_surface_gap(&s, ahead, &gap, normal));
+        assert_true(sf_body_gap(&s, ahead, &gap, normal));
         assert_true(gap > 0); /* not yet touched a little earlier: the front */
         hits++;
     }

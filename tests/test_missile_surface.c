@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "extreme.h"
-#include "solver/contact/rigid_surface.h"
+#include "solver/contact/shapes.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -35,21 +35,21 @@ static void assert_convex_gap(const body *b, const double x[3], double gap, cons
     }
 }
 
-static sf_missile_surface sphere(double cap_cosine) {
+static sf_body sphere(double cap_cosine) {
     sf_error err = SF_ERROR_INIT;
-    sf_missile_surface s;
+    sf_body s;
     sf_model model = {.missile = {.shape = SF_SHAPE_SPHERE,
                                   .sphere_centre = {0.1, -0.2, 0.3},
                                   .sphere_radius = 0.08,
                                   .sphere_cap_cosine = cap_cosine,
                                   .direction = {0, 0.6, -0.8}}};
-    assert_int_equal(sf_missile_surface_build(&model, model.missile.direction, &s, &err), SF_OK);
+    assert_int_equal(sf_body_of_missile(&model, &s, &err), SF_OK);
     return s;
 }
 
 static void sphere_gap_is_distance_minus_radius(void **state) {
     (void)state;
-    sf_missile_surface s = sphere(-1);
+    sf_body s = sphere(-1);
     const double centre[3] = {0.1, -0.2, 0.3};
     uint64_t seed = 20;
     for (int trial = 0; trial < 1000; trial++) {
@@ -61,27 +61,27 @@ static void sphere_gap_is_distance_minus_radius(void **state) {
             u[k] /= length;
             x[k] = centre[k] + distance * u[k];
         }
-        assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
+        assert_true(sf_body_gap(&s, x, &gap, normal));
         assert_close(gap, distance - 0.08, 1e-15);
         assert_close(point_distance(3, normal, u), 0, 1e-13);
     }
     double gap, normal[3];
-    assert_false(sf_missile_surface_gap(&s, centre, &gap, normal)); /* no direction there */
-    sf_missile_surface_free(&s);
+    assert_false(sf_body_gap(&s, centre, &gap, normal)); /* no direction there */
+    sf_body_free(&s);
 }
 
 static void sphere_cap_ends_at_its_rim(void **state) {
     (void)state;
-    sf_missile_surface s = sphere(0.5); /* 60 degrees about (0, 0.6, -0.8) */
+    sf_body s = sphere(0.5); /* 60 degrees about (0, 0.6, -0.8) */
     for (int degrees = 0; degrees <= 180; degrees++) {
         if (degrees == 60)
             continue;
         double angle = degrees * M_PI / 180, gap, normal[3];
         const double u[3] = {sin(angle), 0.6 * cos(angle), -0.8 * cos(angle)};
         const double x[3] = {0.1 + 0.07 * u[0], -0.2 + 0.07 * u[1], 0.3 + 0.07 * u[2]};
-        assert_true(sf_missile_surface_gap(&s, x, &gap, normal) == (degrees < 60));
+        assert_true(sf_body_gap(&s, x, &gap, normal) == (degrees < 60));
     }
-    sf_missile_surface_free(&s);
+    sf_body_free(&s);
 }
 
 /* A polyhedron between the balls of radius R and R - sagitta has its signed distance between theirs. */
@@ -91,7 +91,7 @@ static void fine_triangles_agree_with_the_exact_sphere(void **state) {
     double worst[2] = {0};
     for (int level = 0; level < 2; level++) {
         body b;
-        sf_missile_surface s;
+        sf_body s;
         double sagitta = 0;
         uint64_t seed = 21;
         body_ball(&b, 12 << level, 1, centre);
@@ -112,7 +112,7 @@ static void fine_triangles_agree_with_the_exact_sphere(void **state) {
                 u[k] /= length;
                 x[k] = centre[k] + distance * u[k];
             }
-            assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
+            assert_true(sf_body_gap(&s, x, &gap, normal));
             assert_true(gap >= distance - 1 - 1e-12 && gap <= distance - 1 + sagitta + 1e-12);
             assert_true(body_dot(normal, u) > cos(3.0 / (12 << level)));
             worst[level] = larger(worst[level], gap - (distance - 1));
@@ -127,7 +127,7 @@ static void sign_and_distance_are_exact_near_faces_edges_and_vertices(void **sta
     (void)state;
     const double centre[3] = {-0.3, 0.4, 0.1};
     body b;
-    sf_missile_surface s;
+    sf_body s;
     uint64_t seed = 22;
     int inside = 0;
     body_ball(&b, 3, 1, centre);
@@ -143,7 +143,7 @@ static void sign_and_distance_are_exact_near_faces_edges_and_vertices(void **sta
             for (int c = 0; c < 3; c++)
                 x[k] += weight[c] / sum * body_node(&b, b.surface.triangle[3 * t + c])[k];
         }
-        assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
+        assert_true(sf_body_gap(&s, x, &gap, normal));
         assert_convex_gap(&b, x, gap, normal);
         inside += gap < 0;
     }
@@ -156,7 +156,7 @@ static void normal_on_the_surface_is_outward(void **state) {
     (void)state;
     const double centre[3] = {0, 0, 0};
     body b;
-    sf_missile_surface s;
+    sf_body s;
     body_ball(&b, 4, 1, centre);
     body_build(&b, 0.4, &s);
     for (int64_t t = 0; t < b.surface.triangle_count; t++)
@@ -165,7 +165,7 @@ static void normal_on_the_surface_is_outward(void **state) {
             for (int c = 0; c < 3 - kind; c++)
                 for (int k = 0; k < 3; k++)
                     x[k] += body_node(&b, b.surface.triangle[3 * t + c])[k] / (3 - kind);
-            assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
+            assert_true(sf_body_gap(&s, x, &gap, normal));
             assert_close(gap, 0, 1e-12);
             assert_close(body_dot(normal, normal), 1, 1e-12);
             assert_true(body_dot(normal, x) > 0.9 * sqrt(body_dot(x, x)));
@@ -179,7 +179,7 @@ static void sharp_vertex_has_the_right_side_whatever_its_triangles(void **state)
     (void)state;
     for (int mirrored = 0; mirrored < 2; mirrored++) {
         body b;
-        sf_missile_surface s;
+        sf_body s;
         double n[3][3];
         uint64_t seed = 23;
         body_spike(&b, 30, mirrored);
@@ -198,7 +198,7 @@ static void sharp_vertex_has_the_right_side_whatever_its_triangles(void **state)
             double length = sqrt(body_dot(x, x)), distance = point_random(&seed, 1e-4, 0.19);
             for (int k = 0; k < 3; k++)
                 x[k] *= distance / length;
-            assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
+            assert_true(sf_body_gap(&s, x, &gap, normal));
             assert_close(gap, mirrored ? -distance : distance, 1e-12);
             for (int k = 0; k < 3; k++)
                 assert_close(normal[k], (mirrored ? -x[k] : x[k]) / distance, 1e-9);
@@ -212,7 +212,7 @@ static void sharp_edge_has_the_right_side(void **state) {
     (void)state;
     for (int mirrored = 0; mirrored < 2; mirrored++) {
         body b;
-        sf_missile_surface s;
+        sf_body s;
         uint64_t seed = 29;
         body_spike(&b, 30, mirrored);
         body_build(&b, 0.2, &s);
@@ -233,7 +233,7 @@ static void sharp_edge_has_the_right_side(void **state) {
             double distance = point_random(&seed, 1e-4, 0.19);
             for (int k = 0; k < 3; k++)
                 x[k] = along * body_node(&b, corner[e])[k] + distance / length * out[k];
-            assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
+            assert_true(sf_body_gap(&s, x, &gap, normal));
             assert_close(gap, mirrored ? -distance : distance, 1e-12);
         }
         body_free(&b, &s);
@@ -244,7 +244,7 @@ static void surface_is_found_up_to_its_reach(void **state) {
     (void)state;
     const double centre[3] = {0, 0, 0};
     body b;
-    sf_missile_surface s;
+    sf_body s;
     uint64_t seed = 24;
     body_ball(&b, 6, 1, centre);
     body_build(&b, 0.15, &s);
@@ -254,7 +254,7 @@ static void surface_is_found_up_to_its_reach(void **state) {
         for (int k = 0; k < 3; k++)
             x[k] = point_random(&seed, -1.3, 1.3);
         plane = body_largest_plane(&b, x);
-        bool near = sf_missile_surface_gap(&s, x, &gap, normal);
+        bool near = sf_body_gap(&s, x, &gap, normal);
         if (plane > 0.15 || plane < -0.15)
             assert_false(near);
         if (plane < 0 && plane > -0.15)
@@ -272,7 +272,7 @@ static void surface_is_found_up_to_its_reach(void **state) {
 static void plate_gap_is_the_height_below_it(void **state) {
     (void)state;
     body b;
-    sf_missile_surface s;
+    sf_body s;
     uint64_t seed = 25;
     body_plate(&b, 7, 0.3);
     body_build(&b, 0.02, &s);
@@ -281,11 +281,11 @@ static void plate_gap_is_the_height_below_it(void **state) {
                        trial % 10 ? point_random(&seed, -0.0199, 0.0199) : 0};
         double gap, normal[3];
         const double down[3] = {0, 0, -1};
-        assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
+        assert_true(sf_body_gap(&s, x, &gap, normal));
         assert_close(gap, -x[2], 1e-16);
         assert_close(point_distance(3, normal, down), 0, 1e-12);
         x[2] = trial % 2 ? 0.0201 : -0.0201;
-        assert_false(sf_missile_surface_gap(&s, x, &gap, normal));
+        assert_false(sf_body_gap(&s, x, &gap, normal));
     }
     body_free(&b, &s);
 }
@@ -295,7 +295,7 @@ static void plate_gap_is_the_height_below_it(void **state) {
 static void beside_the_rim_of_a_plate_nothing_is_inside(void **state) {
     (void)state;
     body b;
-    sf_missile_surface s;
+    sf_body s;
     uint64_t seed = 26;
     body_plate(&b, 7, 0.3);
     body_build(&b, 0.02, &s);
@@ -308,7 +308,7 @@ static void beside_the_rim_of_a_plate_nothing_is_inside(void **state) {
         if (trial % 2)
             x[0] = 0.3 + beside;
         double corner = fmax(0, x[1] - 0.3), distance = sqrt(beside * beside + x[2] * x[2] + corner * corner);
-        bool near = sf_missile_surface_gap(&s, x, &gap, normal);
+        bool near = sf_body_gap(&s, x, &gap, normal);
         assert_true(near == (x[2] <= 0 && distance < 0.02));
         if (near)
             assert_close(gap, distance, 1e-15);
@@ -325,7 +325,7 @@ static void rim_on_a_symmetry_plane_is_part_of_the_missile(void **state) {
     for (int hollow = 0; hollow < 2; hollow++) {
         const double centre[3] = {0, 0, 0};
         body b;
-        sf_missile_surface s;
+        sf_body s;
         body_ball(&b, 8, 1, centre);
         b.surface.triangle_count /= 8; /* x, y, z >= 0 */
         for (int64_t t = 0; hollow && t < b.surface.triangle_count; t++) {
@@ -339,7 +339,7 @@ static void rim_on_a_symmetry_plane_is_part_of_the_missile(void **state) {
                 const double x[3] = {distance < 0.9 ? -1e-3 : 0, distance * sin(angle),
                                      distance * cos(angle)};
                 double gap, normal[3];
-                assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
+                assert_true(sf_body_gap(&s, x, &gap, normal));
                 assert_close(gap, hollow ? 1 - distance : distance - 1, 0.02);
             }
         for (int64_t i = 0; i < b.surface.node_count; i++) { /* on the rim, and barely inside */
@@ -350,7 +350,7 @@ static void rim_on_a_symmetry_plane_is_part_of_the_missile(void **state) {
             for (int k = 1; k < 3; k++)
                 x[k] *= hollow ? 1 + 1e-7 : 1 - 1e-7;
             x[0] = -1e-6;
-            assert_true(sf_missile_surface_gap(&s, x, &gap, normal));
+            assert_true(sf_body_gap(&s, x, &gap, normal));
             assert_true(gap < 0);
         }
         body_free(&b, &s);

@@ -3,6 +3,7 @@
 #include "extreme.h"
 
 #include "base/mat3.h"
+#include "solver/contact/shapes.h"
 #include "solver/missile.h"
 
 #include <math.h>
@@ -218,8 +219,8 @@ static void the_surface_turns_with_the_body(void **state) {
     m.missile.sphere_centre[0] = m.missile.centre[0] + 0.03;
     m.missile.sphere_centre[1] = m.missile.centre[1];
     m.missile.sphere_centre[2] = m.missile.centre[2];
-    sf_missile_surface surface;
-    assert_int_equal(sf_missile_surface_build(&m, m.missile.direction, &surface, &err), SF_OK);
+    sf_body surface;
+    assert_int_equal(sf_body_of_missile(&m, &surface, &err), SF_OK);
     sf_missile missile;
     sf_missile_begin(&m, &missile);
     assert_close(missile.radius, 0.11, 1e-15);
@@ -249,7 +250,7 @@ static void the_surface_turns_with_the_body(void **state) {
         sf_missile_motion_at(&m, &missile, x, moved);
         assert_true(sqrt(sf_dot3(moved, moved)) <= dt * sf_missile_fastest(&m, &missile));
     }
-    sf_missile_surface_free(&surface);
+    sf_body_free(&surface);
 }
 
 /* What instruments see: Euler's equations, and the centre alone for the specific force. */

@@ -22,11 +22,11 @@ static void study_rocking(sf_study *study) {
         fewest = f.state.anvil_count < fewest ? f.state.anvil_count : fewest;
         double high = 0;
         for (int64_t c = f.model.contact_count; c < sf_model_points(&f.model); c++)
-            high = larger(high, f.state.contact_position[3 * c + 2]);
+            high = larger(high, f.state.contact.position[3 * c + 2]);
         lift = larger(lift, high);
         if (data)
-            fprintf(data, "%.6g %.6g %.6g %lld\n", 1e3 * f.state.time, 1e3 * high, f.state.anvil_force[2],
-                    (long long)f.state.anvil_count);
+            fprintf(data, "%.6g %.6g %.6g %lld\n", 1e3 * f.state.time, 1e3 * high,
+                    f.state.of_body[SF_BODY_ANVIL].force[2], (long long)f.state.anvil_count);
         sf_step_advance(&f.model, &f.state);
     }
     if (data)

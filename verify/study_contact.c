@@ -369,7 +369,7 @@ static sliding press_obliquely(double friction) {
     const double *e = m->missile.direction;
     double end = PRESS * PAD_HEIGHT / -e[2], across = 0, along = 0;
     int64_t middle = middle_point(m), bound = 0, points = 0;
-    const double *x = &m->position[3 * (int64_t)m->contact_node[middle]], *q = &s->contact_force[3 * middle];
+    const double *x = &m->position[3 * (int64_t)m->contact_node[middle]], *q = &s->contact.force[3 * middle];
     sliding r = {.beyond = -1};
     while (s->missile.displacement < end) {
         fixture_step(&f);
@@ -377,16 +377,16 @@ static sliding press_obliquely(double friction) {
             across += hypot(q[0], q[1]);
             along -= q[2];
         }
-        r.slip = fabs(s->contact_position[3 * middle] - x[0] - s->missile.displacement * e[0]);
+        r.slip = fabs(s->contact.position[3 * middle] - x[0] - s->missile.displacement * e[0]);
         for (int64_t c = 0; c < m->contact_count; c++) {
-            const double *force = &s->contact_force[3 * c];
+            const double *force = &s->contact.force[3 * c];
             if (force[2] < 0)
                 r.beyond = larger(r.beyond, hypot(force[0], force[1]) / (-friction * force[2]) - 1);
         }
         sf_step_advance(m, s);
     }
     for (int64_t c = 0; c < m->contact_count; c++) {
-        const double *force = &s->contact_force[3 * c];
+        const double *force = &s->contact.force[3 * c];
         points += force[2] < 0;
         bound += force[2] < 0 && hypot(force[0], force[1]) > -(1 - 1e-6) * friction * force[2];
     }

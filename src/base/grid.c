@@ -108,3 +108,13 @@ int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius
     qsort(out, (size_t)(found < limit ? found : limit), sizeof *out, sf_by_number);
     return found;
 }
+
+void sf_grid_ball(const double *position, const int32_t node[3], double centre[3], double *radius) {
+    const double *corner[3];
+    sf_corners(position, node, corner);
+    *radius = 0;
+    for (int r = 0; r < 3; r++)
+        centre[r] = (corner[0][r] + corner[1][r] + corner[2][r]) / 3;
+    for (int k = 0; k < 3; k++)
+        *radius = fmax(*radius, sf_distance3(corner[k], centre));
+}

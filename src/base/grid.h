@@ -32,3 +32,6 @@ int64_t sf_grid_query(const sf_grid *grid, const double centre[3], double radius
 /* The same in the order of the bins. */
 int64_t sf_grid_gather(const sf_grid *grid, const double centre[3], double radius, int64_t limit,
                        int32_t *out);
+
+/* Finds a ball round a triangle, as a point of a grid: its centroid, and the largest distance of a corner. */
+void sf_grid_ball(const double *position, const int32_t node[3], double centre[3], double *radius);

@@ -157,29 +157,29 @@ double sf_missile_fastest(const sf_model *m, const sf_missile *missile) {
            missile->radius * sqrt(square * sf_dot3(missile->spin, missile->spin));
 }
 
-bool sf_missile_near(const sf_model *m, const sf_missile *missile, const sf_missile_surface *surface,
-                     const double x[3], double margin) {
+bool sf_missile_near(const sf_model *m, const sf_missile *missile, const sf_body *body, const double x[3],
+                     double margin) {
     double back[3];
     move_back(m, missile, x, back);
-    return sf_missile_surface_near(surface, back, margin);
+    return sf_body_is_near(body, back, margin);
 }
 
-static bool gap_of(const sf_missile_surface *surface, const double back[3], const double quaternion[4],
-                   double *gap, double normal[3]) {
+static bool gap_of(const sf_body *body, const double back[3], const double quaternion[4], double *gap,
+                   double normal[3]) {
     double turned[3];
-    if (!sf_missile_surface_gap(surface, back, gap, turned))
+    if (!sf_body_gap(body, back, gap, turned))
         return false;
     sf_rotate(quaternion, turned, normal);
     return true;
 }
 
-bool sf_missile_gap(const sf_model *m, const sf_missile *missile, const sf_missile_surface *surface,
-                    const double x[3], double *gap, double normal[3]) {
+bool sf_missile_gap(const sf_model *m, const sf_missile *missile, const sf_body *body, const double x[3],
+                    double *gap, double normal[3]) {
     double back[3];
     move_back(m, missile, x, back);
     if (sf_missile_turns(m))
-        return gap_of(surface, back, missile->quaternion, gap, normal);
-    return sf_missile_surface_gap(surface, back, gap, normal);
+        return gap_of(body, back, missile->quaternion, gap, normal);
+    return sf_body_gap(body, back, gap, normal);
 }
 
 /* ---- its part in one contact solve ---- */
@@ -226,8 +226,8 @@ void sf_missile_free_motion(const sf_missile_response *response, const double x[
 }
 
 bool sf_missile_gap_ahead(const sf_model *m, const sf_missile *missile, const sf_missile_response *response,
-                          const sf_missile_surface *surface, const double x[3], const double step[3],
-                          double *gap, double normal[3]) {
+                          const sf_body *body, const double x[3], const double step[3], double *gap,
+                          double normal[3]) {
     double next[3], back[3], centre[3], quaternion[4];
     if (response->turns) {
         sf_rotation_advance(missile->quaternion, response->turn, quaternion);
@@ -236,12 +236,12 @@ bool sf_missile_gap_ahead(const sf_model *m, const sf_missile *missile, const sf
             centre[r] = response->centre[r] + response->step[r];
         }
         turn_back(m, centre, quaternion, next, back);
-        return gap_of(surface, back, quaternion, gap, normal);
+        return gap_of(body, back, quaternion, gap, normal);
     }
     move_back(m, missile, x, next);
     for (int r = 0; r < 3; r++)
         next[r] = next[r] + step[r] - response->travel * response->direction[r];
-    return sf_missile_surface_gap(surface, next, gap, normal);
+    return sf_body_gap(body, next, gap, normal);
 }
 
 static void load_turning(sf_missile_response *response, const double x[3], const double force[3]) {

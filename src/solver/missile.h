@@ -14,7 +14,7 @@
  * scalar "along" is the component in the direction of the missile card. */
 #pragma once
 #include "io/members.h"
-#include "solver/contact/rigid_surface.h"
+#include "solver/contact/shape.h"
 
 /* The numbers of the missile in a checkpoint (io/members.h). */
 /* clang-format off */
@@ -75,12 +75,12 @@ void sf_missile_place(const sf_model *model, const sf_missile *missile, const do
 void sf_missile_orient(const sf_model *model, const sf_missile *missile, const double rest[3], double out[3]);
 /* Bound (m s-1) on the speed of all its points at the half step. */
 double sf_missile_fastest(const sf_model *model, const sf_missile *missile);
-/* sf_missile_surface_near and sf_missile_surface_gap at the present pose; x and normal in the geometry's
+/* sf_body_is_near and sf_body_gap at the present pose; x and normal in the geometry's
  * frame. */
-bool sf_missile_near(const sf_model *model, const sf_missile *missile, const sf_missile_surface *surface,
-                     const double x[3], double margin);
-bool sf_missile_gap(const sf_model *model, const sf_missile *missile, const sf_missile_surface *surface,
-                    const double x[3], double *gap, double normal[3]);
+bool sf_missile_near(const sf_model *model, const sf_missile *missile, const sf_body *body, const double x[3],
+                     double margin);
+bool sf_missile_gap(const sf_model *model, const sf_missile *missile, const sf_body *body, const double x[3],
+                    double *gap, double normal[3]);
 
 /* ---- its part in one contact solve ---- */
 
@@ -104,11 +104,11 @@ sf_missile_response sf_missile_predict(const sf_model *model, const sf_missile *
                                        double dt, double dt_old);
 /* Displacement (m), in the next step without contact forces, of the missile's material point at x. */
 void sf_missile_free_motion(const sf_missile_response *response, const double x[3], double out[3]);
-/* sf_missile_surface_gap, at the pose that ends the next step without contact forces, of a point that moves
+/* sf_body_gap, at the pose that ends the next step without contact forces, of a point that moves
  * by `step` (m) from x in it. */
 bool sf_missile_gap_ahead(const sf_model *model, const sf_missile *missile,
-                          const sf_missile_response *response, const sf_missile_surface *surface,
-                          const double x[3], const double step[3], double *gap, double normal[3]);
+                          const sf_missile_response *response, const sf_body *body, const double x[3],
+                          const double step[3], double *gap, double normal[3]);
 /* Adds a force (N) of the missile on the pad at x to the response. */
 void sf_missile_load(sf_missile_response *response, const double x[3], const double force[3]);
 /* Acceleration (m s-2) that the forces taken so far give the missile's material point at x, against which

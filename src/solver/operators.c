@@ -2,6 +2,7 @@
 #include "solver/operators.h"
 
 #include "model/stability.h"
+#include "solver/contact/shapes.h"
 #include "solver/set.h"
 
 static sf_status build_laws(const sf_model *m, sf_operators *op, sf_error *err) {
@@ -26,15 +27,16 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
         owned->edge_pairs = sf_pairs_count(m);
         sf_model_drop_edges(owned);
     }
-    if (sf_constraint_build(m, &op->constraint, err) != SF_OK ||
-        sf_contact_rows_build(m, &op->rows, err) != SF_OK ||
-        sf_anvil_build(m, &op->rows, &op->anvil, err) != SF_OK || sf_skin_build(m, &op->skin, err) != SF_OK ||
-        sf_membrane_build(m, &op->membrane, err) != SF_OK)
-        return err->status;
-    SF_TRY(sf_missile_surface_build(m, sf_missile_direction(m), &op->surface, err));
-    SF_TRY(sf_sharp_build_missile(m, op->surface.spacing, &op->sharp, err));
-    SF_TRY(sf_sharp_build_supports(m, &op->skin, &op->self_sharp, err));
-    return m->set ? sf_set_check_missile(m, &op->surface, err) : SF_OK;
+    SF_TRY(sf_constraint_build(m, &op->constraint, err));
+    SF_TRY(sf_membrane_build(m, &op->membrane, err));
+    SF_TRY(sf_skin_build(m, &op->skin, err));
+    SF_TRY(sf_skin_build_contact(m, &op->contact, err));
+    SF_TRY(sf_weight_build(m, &op->contact.rows, &op->weight, err));
+    SF_TRY(sf_bodies_of_planes(m, op->skin.spacing, op->body, err));
+    SF_TRY(sf_body_of_missile(m, &op->body[SF_BODY_MISSILE], err));
+    SF_TRY(sf_sharp_build(m, true, &op->contact, &op->contact_sharp, err));
+    SF_TRY(sf_sharp_build(m, false, &op->skin, &op->skin_sharp, err));
+    return m->set ? sf_set_check_missile(m, &op->body[SF_BODY_MISSILE], err) : SF_OK;
 }
 
 sf_status sf_operators_build(const sf_model *m, sf_operators *op, sf_error *err) {
@@ -54,13 +56,14 @@ void sf_operators_free(sf_operators *op) {
         sf_material_law_free(&op->law[k]);
     sf_halo_free(&op->halo);
     sf_constraint_free(&op->constraint);
-    sf_contact_rows_free(&op->rows);
-    sf_anvil_free(&op->anvil);
-    sf_skin_free(&op->skin);
     sf_membrane_free(&op->membrane);
-    sf_missile_surface_free(&op->surface);
-    sf_sharp_free(&op->sharp);
-    sf_sharp_free(&op->self_sharp);
+    sf_weight_free(&op->weight);
+    for (int b = 0; b < SF_BODIES; b++)
+        sf_body_free(&op->body[b]);
+    sf_skin_free(&op->contact);
+    sf_skin_free(&op->skin);
+    sf_sharp_free(&op->contact_sharp);
+    sf_sharp_free(&op->skin_sharp);
     sf_pairs_free(&op->pairs);
     SF_CLEAR(op, op->law, op->stability);
 }

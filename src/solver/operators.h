@@ -3,11 +3,10 @@
 #pragma once
 #include "material/laws.h"
 #include "solver/constraint/constraint.h"
-#include "solver/contact/rigid_surface.h"
 #include "solver/contact/sharp.h"
-#include "solver/contact/skin.h"
 #include "solver/field/pairs.h"
 #include "solver/field/membrane.h"
+#include "solver/weight.h"
 
 typedef struct sf_operators {
     int64_t law_count;
@@ -19,12 +18,11 @@ typedef struct sf_operators {
     sf_pairs pairs;
 
     sf_constraint constraint;
-    sf_contact_rows rows;
-    sf_anvil anvil;
-    sf_skin skin;
     sf_membrane membrane;
-    sf_missile_surface surface;
-    sf_sharp sharp, self_sharp; /* of missile and supports */
+    sf_weight weight;
+    sf_body body[SF_BODIES];            /* what the pad may touch, but for the supports */
+    sf_skin contact, skin;              /* points and faces that touch missile and anvil, and all others */
+    sf_sharp contact_sharp, skin_sharp; /* sharp edges of missile and supports, which press them */
 } sf_operators;
 
 sf_status sf_operators_build(const sf_model *model, sf_operators *operators, sf_error *err);

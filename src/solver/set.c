@@ -101,12 +101,12 @@ sf_status sf_set_move(sf_model *m, const double *set, const double *peak, double
     return SF_OK;
 }
 
-sf_status sf_set_check_missile(const sf_model *m, const sf_missile_surface *surface, sf_error *err) {
+sf_status sf_set_check_missile(const sf_model *m, const sf_body *body, sf_error *err) {
     double gap, normal[3];
     sf_missile missile;
     sf_missile_begin(m, &missile);
     for (const int32_t *i = m->contact_node; i < m->contact_node + m->contact_count; i++)
-        if (sf_missile_gap(m, &missile, surface, &m->position[3 * (int64_t)*i], &gap, normal) &&
+        if (sf_missile_gap(m, &missile, body, &m->position[3 * (int64_t)*i], &gap, normal) &&
             -gap > SF_CONTACT_ENTRY * m->spacing[*i])
             return SF_REFUSE(err,
                              "the permanent set has moved foam %.3g mm into the missile at its start: give a "

@@ -14,7 +14,7 @@ void sf_set_watch(const sf_model *model, sf_state *state);
 sf_status sf_set_move(sf_model *model, const double *set, const double *peak, double pause, sf_error *err);
 
 /* SF_ERR_INPUT if the set has moved foam into the missile at t = 0 by more than SF_CONTACT_ENTRY. */
-sf_status sf_set_check_missile(const sf_model *model, const sf_missile_surface *surface, sf_error *err);
+sf_status sf_set_check_missile(const sf_model *model, const sf_body *body, sf_error *err);
 
 /* Depth (m) of the set at the contact node next to the impact point, not down a hole, and the largest.
  */

@@ -40,34 +40,32 @@ static const sf_state_array arrays[] = {
     KEPT(set_peak, 'u', 3),
     KEPT(mode, 'n', 1),
     SCRATCH(directional, 'n', 6 * sizeof(float)),
-    KEPT(contact_position, 'c', 3),
-    KEPT(contact_motion, 'c', 3),
-    KEPT(contact_step, 'c', 3),
-    KEPT(contact_force, 'c', 3),
-    KEPT(contact_old, 'c', 3),
-    KEPT(contact_gap, 'c', 1),
-    KEPT(contact_normal, 'c', 3),
+    KEPT(contact.position, 'c', 3),
+    KEPT(contact.force, 'c', 3),
+    KEPT(contact.normal, 'c', 3),
     KEPT(contact_rubbed, 'c', 1),
-    KEPT(contact_load, 'w', 3),
-    KEPT_NUMBERS(sharp.key, 'q', 2),
-    KEPT(sharp.force, 'q', 3),
-    KEPT(sharp.ahead, 'a', 3),
-    KEPT_NUMBERS(self_sharp.key, 'r', 2),
-    KEPT(self_sharp.force, 'r', 3),
-    SCRATCH(self_position, 's', 3 * sizeof(double)),
-    SCRATCH(self_motion, 's', 3 * sizeof(double)),
-    SCRATCH(self_step, 's', 3 * sizeof(double)),
-    KEPT(self_force, 's', 3),
-    KEPT_NUMBERS(self_partner, 's', 1),
-    KEPT(self_weight, 's', 4),
-    SCRATCH(self_candidate, 's', SF_SELF_CANDIDATES * sizeof(int32_t)),
-    SCRATCH(self_normal, 'f', 3 * sizeof(double)),
-    SCRATCH(self_close, 's', sizeof(int32_t)),
-    SCRATCH(self_near, 's', sizeof(int32_t)),
+    KEPT(contact.load, 'w', 3),
+    KEPT_NUMBERS(contact.sharp.key, 'q', 2),
+    KEPT(contact.sharp.force, 'q', 3),
+    SCRATCH(contact.motion, 'c', 3 * sizeof(double)),
+    SCRATCH(contact.step, 'c', 3 * sizeof(double)),
+    SCRATCH(contact.close, 'c', sizeof(int32_t)),
+    SCRATCH(contact.near, 'c', sizeof(int32_t)),
+    KEPT(skin.force, 's', 3),
+    KEPT_NUMBERS(skin.partner, 's', 1),
+    KEPT(skin.weight, 's', 4),
+    KEPT_NUMBERS(skin.sharp.key, 'r', 2),
+    KEPT(skin.sharp.force, 'r', 3),
+    SCRATCH(skin.position, 's', 3 * sizeof(double)),
+    SCRATCH(skin.motion, 's', 3 * sizeof(double)),
+    SCRATCH(skin.step, 's', 3 * sizeof(double)),
+    SCRATCH(skin.candidate, 's', SF_SELF_CANDIDATES * sizeof(int32_t)),
+    SCRATCH(skin.side, 'f', 3 * sizeof(double)),
+    SCRATCH(skin.close, 's', sizeof(int32_t)),
+    SCRATCH(skin.near, 's', sizeof(int32_t)),
     SCRATCH(membrane.position, 'm', 3 * sizeof(double)),
     SCRATCH(membrane.force, 'm', 3 * sizeof(double)),
     SCRATCH(membrane.row, 't', SF_MEMBRANE_ROW * sizeof(double)),
-    SCRATCH(contact_near, 'c', sizeof(int32_t)),
     SCRATCH(contact_push, 'n', 3 * sizeof(double)),
     SCRATCH(partial, 'k', sizeof(sf_partial)),
 #undef KEPT
@@ -119,8 +117,6 @@ int64_t sf_state_rows(const sf_model *model, char rows) {
         return sf_model_points(model);
     case 'w':
         return model->contact_face_count > 0 ? sf_model_points(model) : 0;
-    case 'a':
-        return model->contact_face_count > 0;
     case 'q': /* at most, if all corners are sharp */
         return model->contact_face_count > 0
                    ? model->surface_node_count + 3 * model->contact_face_count + SF_SHARP_MORE
@@ -180,14 +176,14 @@ sf_status sf_state_create(const sf_model *model, sf_state *s, sf_error *err) {
         s->pair_stiffness[i] = sf_material_rest_modulus(sf_model_material(model, i));
     }
     for (int64_t p = sf_state_rows(model, 's') - 1; p >= 0; p--)
-        s->self_partner[p] = -1;
+        s->skin.partner[p] = SF_NO_PARTNER;
     for (int64_t c = 0; c < sf_model_points(model); c++)
-        memcpy(&s->contact_position[3 * c], &model->position[3 * sf_model_point_node(model, c)],
+        memcpy(&s->contact.position[3 * c], &model->position[3 * sf_model_point_node(model, c)],
                3 * sizeof(double));
     for (int64_t k = 0; k < model->rest_count; k++) /* settled */
-        s->contact_force[3 * (model->contact_count + k) + 2] = model->rest_load[k];
+        s->contact.force[3 * (model->contact_count + k) + 2] = model->rest_load[k];
     for (int64_t k = 0; k < 3 * sf_state_rows(model, 'w'); k++)
-        s->contact_load[k] = s->contact_force[k];
+        s->contact.load[k] = s->contact.force[k];
     if (model->set)
         memcpy(s->set, model->set, 4 * (size_t)model->node_count * sizeof *s->set);
     s->tightness = 1;
@@ -220,21 +216,17 @@ bool sf_state_is_finite(const sf_model *m, const sf_state *s) {
            all_finite(s->missile.spin, 3) && all_finite(s->missile.quaternion, 4);
 }
 
-static void release_sharp(sf_sharp_state *s) {
-    sf_workspace *work[] = {&s->list, &s->centre, &s->radius,  &s->found,    &s->start,
-                            &s->node, &s->used,   &s->old_key, &s->old_force};
-    for (size_t k = 0; k < sizeof work / sizeof work[0]; k++)
-        sf_workspace_free(work[k]);
+static void release_work(sf_contact_work *of) {
+    sf_workspace *work = (sf_workspace *)of;
+    for (size_t k = 0; k < sizeof *of / sizeof *work; k++)
+        sf_workspace_free(&work[k]);
 }
 
 void sf_state_free(sf_state *s) {
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
         free(*(void **)((char *)s + arrays[k].offset));
-    sf_workspace *work = (sf_workspace *)&s->contact_work;
-    for (size_t k = 0; k < sizeof s->contact_work / sizeof *work; k++)
-        sf_workspace_free(&work[k]);
-    release_sharp(&s->sharp);
-    release_sharp(&s->self_sharp);
+    release_work(&s->contact.work);
+    release_work(&s->skin.work);
     memset(s, 0, sizeof *s);
 }
 

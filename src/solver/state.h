@@ -99,7 +99,7 @@ typedef struct sf_partial {
     X(double, tightness, , "1", "highest frequency squared over its bound, from the power iteration")                  \
     X(int64_t, contact_count, , "1", "points with a force of the missile")                                             \
     X(int64_t, anvil_count, , "1", "points with a force of the anvil")                                                 \
-    X(double, anvil_force, [3], "N", "of the anvil on a resting pad")                                                  \
+    X(double, ahead, [3], "J", "work of sharp edges over the next step: lost in contact, in friction, done by a driven missile") \
     X(double, penetration, , "m", "deepest now")                                                                       \
     X(double, rubbed_back, , "J", "given back by the friction of single points, to date")                              \
     X(double, vibration, , "J", "largest energy so far of motion that alternates from step to step, in two measurements together") \
@@ -124,6 +124,11 @@ typedef struct sf_ledger {
     SF_LEDGER_NUMBERS(SF_DECLARE)
 } sf_ledger;
 
+/* Force (N) and moment (N m, about the origin) on the pad. */
+typedef struct sf_wrench {
+    double force[3], moment[3];
+} sf_wrench;
+
 enum { SF_SELF_CANDIDATES = 48 };
 
 /* Sharp edges of missile or supports on the faces of the pad (contact/sharp.h). */
@@ -136,18 +141,39 @@ enum { SF_SHARP_MORE = 64 }; /* pairs of a step beyond one for each corner of th
 typedef struct sf_sharp_state {
     int32_t *key;  /* [pairs][2] part and 1 + slot of the last step's pairs, as listed; 0 behind the last */
     double *force; /* [pairs][3] N, on the pad */
-    double
-        *ahead; /* [3] J, work over the next step: lost in contact, in friction, done by a driven missile */
     int64_t count; /* of candidates */
-    sf_workspace list, centre, radius, found, start, node, used, old_key, old_force;
 } sf_sharp_state;
 
-/* Memory of contact, taken in the first step and used again in each. */
+/* Memory of a solve, taken in the first step and used again in each. */
 typedef struct sf_contact_work {
-    sf_workspace point, pair, edge_force;                         /* pairs of contact.c and self_contact.c */
-    sf_workspace centre, radius, found, used, is_near, near_list; /* candidates.c */
-    sf_workspace grid_start[2], grid_node[2];                     /* of pad and supports */
+    sf_workspace pair, edge_force, old_key, old_force;                /* pairs */
+    sf_workspace centre, radius, found, used, is_near, near_list, list; /* contact/broad.c */
+    sf_workspace grid_start[2], grid_node[2];                         /* of pad and supports */
 } sf_contact_work;
+
+/* The points of a solve of contact (contact/skin.h): those of missile and anvil, sf_model_points of the model, or
+ * those of the skin, which only a pad that may touch itself or a support has. */
+typedef struct sf_contact_points {
+    double *position;   /* [points][3] m, physical, now; of those in `near`, as the next two */
+    double *motion;     /* [points][3] m, its last step */
+    double *step;       /* [points][3] m, its next step without these forces */
+    double *force;      /* [points][3] N, on the point, of the last step */
+    int32_t *close;     /* [points] those that may touch before `room` is used up, and the nodes of their facets */
+    int32_t *near;      /* [points] these, and the nodes of all facets at them */
+    int64_t close_count, near_count;
+    double room;  /* m, approach of points and bodies until the lists are made anew */
+    double depth; /* m, deepest now */
+    /* Contact points alone. */
+    double *normal; /* [points][3] outward from the missile or the anvil */
+    double *load;   /* [points][3] N, by the point itself and by sharp edges; only if there may be some */
+    /* The skin alone. */
+    double *side;       /* [sides][3] outward normal now, unit; of the points in `close` */
+    int32_t *partner;   /* [points] what it touches (contact/shape.h) */
+    double *weight;     /* [points][4] of the facet's nodes, and of the fourth of its quadrangle */
+    int32_t *candidate; /* [points][SF_SELF_CANDIDATES] facets near the node, -1 behind the last */
+    sf_sharp_state sharp;
+    sf_contact_work work;
+} sf_contact_points;
 
 typedef struct sf_state {
     SF_STATE_NUMBERS(SF_DECLARE)
@@ -192,46 +218,14 @@ typedef struct sf_state {
     double *mode;       /* [n] its vector */
     float *directional; /* [n][6] Pa, tangent by direction (material/laws.h), when sf_time_step_due */
 
-    /* Contact points: sf_model_points of the model, those of the missile before those of the anvil. */
-    double *contact_position; /* [contacts][3] m, physical, now */
-    double *contact_motion;   /* [contacts][3] m, its last step */
-    double *contact_step;     /* [contacts][3] m, its next step without contact forces */
-    double *contact_force;    /* [contacts][3] N, on the pad */
-    double *contact_old;      /* [contacts][3] N, of the last step */
-    double *contact_gap;      /* [contacts] m, predicted */
-    double *contact_normal;   /* [contacts][3] outward from the missile or the anvil */
-    double *contact_rubbed;   /* [contacts] J, work of friction to date */
-    int32_t *contact_near;    /* [contacts] Verlet list: the points that can touch before contact_room is used
-                                 up; arrays of other points are not up to date */
-    int64_t contact_near_count;
-    sf_sharp_state sharp; /* of the missile */
-    double *
-        contact_load; /* [contacts][3] N, by the point itself and by sharp edges; only if there may be some */
-    double *contact_push; /* [n][3] m s-2, acceleration by the forces of a solve; zero between them */
-    sf_contact_work contact_work;
-
-    /* Contact of the skin with itself (contact/self_contact.h); by point of the skin, only a pad with one has
-     * these. */
-    double *self_position;   /* [skin][3] m, physical, now; of nodes in self_near, as the next two */
-    double *self_motion;     /* [skin][3] m, its last step */
-    double *self_step;       /* [skin][3] m, its next step without these forces */
-    double *self_force;      /* [skin][3] N, on the node, of the last step */
-    int32_t *self_partner;   /* [skin] facet that it touches; -1: none, -2 - k: plane k (contact/skin.h) */
-    double *self_weight;     /* [skin][4] of the facet's nodes, and of the fourth of its quadrangle */
-    int32_t *self_candidate; /* [skin][SF_SELF_CANDIDATES] facets near the node, -1 behind the last */
-    double *self_normal;     /* [sides][3] outward now, unit; of the points in self_close */
-    int32_t *self_close;     /* [skin] list of the nodes that may touch soon, and of their facets' nodes */
-    int32_t *self_near;      /* [skin] list of these, and of the nodes of all facets at them */
-    int64_t self_close_count, self_near_count;
-    sf_sharp_state self_sharp;                                     /* of the supports */
-    double self_sharp_force[SF_SUPPORTS][3], self_sharp_moment[3]; /* N, N m about the origin, in this step */
-    double self_room;                                              /* m, until the lists are made anew */
-    double self_penetration;                                       /* m, deepest now */
+    sf_contact_points contact, skin;
+    double *contact_rubbed; /* [contacts] J, work of friction to date */
+    double *contact_push;   /* [n][3] m s-2, acceleration by the forces of a solve; zero between them */
+    sf_wrench of_body[SF_BODIES]; /* on the pad in this step, but for the missile */
 
     sf_membrane_state membrane;
 
-    double contact_room; /* m, rest of the skin: approach of points and missile until the list is made anew */
-    double fastest;      /* m s-1, of the coefficients at the half step */
+    double fastest; /* m s-1, of the coefficients at the half step */
 
     int64_t chunk_count;
     sf_partial *partial; /* [chunks] */
@@ -244,8 +238,7 @@ typedef struct sf_state_array {
     const char *name; /* in a checkpoint; NULL: used within one step only */
     size_t offset;
     char rows; /* n nodes, l nodes of a pad of layers, u nodes of foam with a set, h rows of history of all
-                  blocks of lanes, c contact points, w those of a pad with contact faces, a one row of such a
-                  pad, q and r pairs of sharp edges of missile and supports, s points and f sides of the skin,
+                  blocks of lanes, c contact points, w those of a pad with contact faces, q and r pairs of sharp edges of missile and supports, s points and f sides of the skin,
                   m and t nodes and triangles of the membrane, k chunks */
     int bytes; /* of a row */
     sf_h5_type type; /* of an item that has a name: SF_H5_F64 or SF_H5_I32 */
@@ -264,7 +257,7 @@ void sf_state_free(sf_state *state);
 
 /* Forces (N) of missile and anvil on the contact points [contacts][3]. */
 static inline const double *sf_state_load(const sf_model *model, const sf_state *state) {
-    return model->contact_face_count > 0 ? state->contact_load : state->contact_force;
+    return model->contact_face_count > 0 ? state->contact.load : state->contact.force;
 }
 
 /* The energy ledger and the momentum balance. Stored and hysteretic energy are state functions of W and its
@@ -275,12 +268,6 @@ static inline const double *sf_state_load(const sf_model *model, const sf_state 
  * a missile that turns (sf_missile_momenta); angular momentum is about the origin, its error refers to the
  * same momentum times the pad's thickness. Both hold to rounding, whatever the step: theory, section
  * "Ledger". */
-
-/* Force (N) and moment (N m, about the origin) on the pad of all that is outside the balance: constraints,
- * anvil, weight; but for the missile. Whoever applies such a force adds it. */
-typedef struct sf_wrench {
-    double force[3], moment[3];
-} sf_wrench;
 
 /* A force (N) at the place x (m, present). */
 void sf_wrench_add(sf_wrench *wrench, const double x[3], const double force[3]);

@@ -4,7 +4,6 @@
 #include "base/mat3.h"
 #include "solver/contact/contact.h"
 #include "solver/contact/ledger.h"
-#include "solver/contact/self_contact.h"
 #include "solver/field/domain_stress.h"
 #include "solver/field/stabilisation.h"
 #include "solver/set.h"
@@ -260,26 +259,20 @@ sf_status sf_step_evaluate(const sf_model *m, const sf_operators *op, sf_state *
     sf_lap(s->watch, SF_PHASE_TIME_STEP);
     double dt_v = 0.5 * (s->dt_old + s->dt);
 
-    SF_TRY(sf_self_contact_solve(m, op, s, err)); /* f += phi^T q */
-    SF_TRY(sf_contact_solve(m, op, s, err));      /* f += phi^T q; missile's acceleration */
+    SF_TRY(sf_contact_solve(m, op, s, err)); /* f += phi^T q; missile's acceleration */
     sf_lap(s->watch, SF_PHASE_CONTACT);
     sf_constraint_step held = {.force = s->force, .v = s->v, .dt = dt_v, .reaction = s->reaction};
     sf_constraint_project(&op->constraint, &held);
-    sf_wrench below = {{0}, {0}};
-    sf_ledger_outside(m, op, s, false, &below);
-    sf_ledger_supports(m, &op->skin, s);
-    s->penetration = fmax(s->penetration, s->self_penetration);
-    for (int r = 0; r < 3; r++)
-        s->base_reaction[r] = held.base[r] + s->anvil_force[r] + below.force[r];
+    sf_ledger_supports(m, s, held.base);
     if (s->step % RESIDUAL_INTERVAL == 0)
         s->constraint_residual = sf_constraint_residual(m, &op->constraint, &held);
     sf_lap(s->watch, SF_PHASE_CONSTRAINT);
 
     SF_BY_ALL_THREADS(m->node_count > SF_FEW_NODES, accelerate(m, s, dt_v)); /* v at the next half step */
     sf_missile_kick(m, &s->missile, s->time, s->dt, s->dt_old);
-    s->ledger.weight = sf_anvil_work(&op->anvil, s->d);
+    s->ledger.weight = sf_weight_work(&op->weight, s->d);
     sf_wrench outside = wrench_of_constraints(s, &held);
-    sf_ledger_outside(m, op, s, true, &outside);
+    sf_ledger_outside(m, &op->weight, s, &outside);
     sf_ledger_close(m, s, &outside, dt_v);
     sf_set_watch(m, s);
     sf_lap(s->watch, SF_PHASE_MOTION);

@@ -1,13 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contact of the pad's surface points with the rigid missile, and of a resting pad's underside with the
- * anvil (theory, section "Contact"; contact/solve.h). The energy lost is the impact energy of the surface
- * points that the missile catches up with. */
+/* Contact of the pad with all that it may touch (theory, section "Contact"): prepare (positions, lists), warm
+ * start (pairs with the forces of the last step), solve (contact/solve.h), store (forces, ledger). First the
+ * skin with itself, its mirror image, planes and supports, then the contact points with missile and anvil.
+ *
+ * Without these forces the gap of a pair at the next time would be g; the forces q on the point, and -q
+ * shared among the points of its partner, are those for which no gap is negative, none pulls, and Coulomb's
+ * law holds. Momentum and angular momentum hold: forces along the normal are on one line, and sf_pair_lean
+ * takes up the moment of friction. The energy lost is the impact energy of the surface points that are caught
+ * up with. */
 #pragma once
 #include "solver/operators.h"
 #include "solver/state.h"
 
-/* Finds the contact forces of this step, adds them and a resting pad's weight to state->force (with Phi^T)
- * and to missile and anvil, and adds the work lost since the last step to the ledger. Needs force without
+/* Finds the contact forces of this step, adds them and a resting pad's weight to state->force (with Phi^T),
+ * to missile and bodies, and adds the work lost since the last step to the ledger. Needs force without
  * contact, reaction of the last step, dt and dt_old. */
 sf_status sf_contact_solve(const sf_model *model, const sf_operators *operators, sf_state *state,
                            sf_error *err);

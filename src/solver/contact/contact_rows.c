@@ -94,17 +94,6 @@ static int64_t put_row(const sf_model *m, const joined *j, int32_t first, sf_con
     return at;
 }
 
-sf_status sf_contact_rows_build(const sf_model *m, sf_contact_rows *rows, sf_error *err) {
-    int64_t points = sf_model_points(m);
-    SF_OWNED int32_t *node = sf_alloc(err, points, sizeof *node, "contact rows");
-    memset(rows, 0, sizeof *rows);
-    for (int64_t c = 0; node && c < points; c++)
-        node[c] = (int32_t)sf_model_point_node(m, c);
-    if (node)
-        sf_contact_rows_of_nodes(m, points, node, rows, err);
-    return err->status;
-}
-
 static void measure_rows(const sf_model *m, int64_t points, sf_contact_rows *rows) {
     for (int64_t c = 0; c < points; c++) {
         double sum = 0;
@@ -116,8 +105,8 @@ static void measure_rows(const sf_model *m, int64_t points, sf_contact_rows *row
     }
 }
 
-sf_status sf_contact_rows_of_nodes(const sf_model *m, int64_t points, const int32_t *point,
-                                   sf_contact_rows *rows, sf_error *err) {
+sf_status sf_contact_rows_build(const sf_model *m, int64_t points, const int32_t *point,
+                                sf_contact_rows *rows, sf_error *err) {
     joined j = {0};
     memset(rows, 0, sizeof *rows);
     rows->ptr = sf_alloc(err, points + 1, sizeof *rows->ptr, "contact rows");

@@ -3,7 +3,7 @@
 #include "model/model.h"
 
 /* The rows Phi_c over the nodes, by which coefficients move the contact points and forces there act on the
- * coefficients, for the points of sf_model_points. The row of a point of one cloud is phi of its node.
+ * coefficients. The row of a point of one cloud is phi of its node.
  * Copies of a node in several layers, tied in every component, are one point: each layer has the share m_i
  * / sum m of it, m_i = 1 / (phi_i M^-1 phi_i^T) being its inertia there. So a force accelerates all copies
  * alike, and leaves nothing to the tie at this point; the mobility is 1 / sum m. */
@@ -17,8 +17,7 @@ typedef struct sf_contact_rows {
         spread; /* -, largest sum |Phi| of a point: none is faster than this times the fastest coefficient */
 } sf_contact_rows;
 
-sf_status sf_contact_rows_build(const sf_model *model, sf_contact_rows *rows, sf_error *err);
-/* The rows of any `count` nodes. */
-sf_status sf_contact_rows_of_nodes(const sf_model *model, int64_t count, const int32_t *node,
-                                   sf_contact_rows *rows, sf_error *err);
+/* Makes the rows of `count` nodes. */
+sf_status sf_contact_rows_build(const sf_model *model, int64_t count, const int32_t *node,
+                                sf_contact_rows *rows, sf_error *err);
 void sf_contact_rows_free(sf_contact_rows *rows);

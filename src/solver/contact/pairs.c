@@ -1,81 +1,120 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "solver/contact/pairs.h"
 
-#include "base/mat3.h"
-
-static const double DEEPEST = 0.1;  /* of the spacing: deeper edges lie on the far sides of a thin part */
-static const double CROSSING = 0.2; /* least sine of the angle between two edges */
-static const double BEYOND = 0.01;  /* of an edge: it goes on beyond its ends, so that where two edges of a
-                                       notch meet both act */
+static const double EDGE_DEEPEST = 0.1; /* of the spacing: deeper edges lie on the far sides of a thin part */
+static const double CROSSING = 0.2;     /* least sine of the angle between two edges */
+static const double BEYOND = 0.01; /* of an edge: it goes on beyond its ends, so that where two edges of a
+                                      notch meet both act */
 static const double SLOPE = 0.01; /* least sine by which the faces at an edge fall away from the other edge */
 
-void sf_pair_relative(const sf_contact_pair *q, const double *field, double out[3]) {
-    memset(out, 0, 3 * sizeof *out);
-    for (int k = 0; k < q->parts; k++) {
-        const double *own = &field[3 * (int64_t)q->part[k]];
-        double along = q->leans ? sf_dot3(own, q->normal) : 0;
-        for (int r = 0; r < 3; r++)
-            out[r] += q->share[k] * own[r] + (q->leans ? q->lean[k][r] * along : 0);
-    }
+static void subtract(const sf_contact_points *at, int32_t a, int32_t b, double out[3]) {
+    sf_sub3(&at->position[3 * (int64_t)a], &at->position[3 * (int64_t)b], out);
 }
 
-void sf_pair_drop_traces(double weight[4]) {
-    static const double TRACE = 1e-12;
-    int largest = weight[1] > weight[0] ? 1 : 0;
-    double rest = 1;
-    for (int k = 2; k < 4; k++)
-        largest = weight[k] > weight[largest] ? k : largest;
-    for (int k = 1; k < 4; k++) {
-        double *own = &weight[(largest + k) % 4];
-        *own = fabs(*own) < TRACE ? 0 : *own;
-        rest -= *own;
-    }
-    weight[largest] = rest;
+int64_t sf_pair_last(const sf_scene *c, int64_t p) {
+    const double *force = &c->at->force[3 * p];
+    if (!c->response)
+        return c->at->partner[p];
+    return sf_dot3(force, force) == 0 ? SF_NO_PARTNER : SF_FIRST_BODY - sf_skin_body(c->skin, p);
 }
 
-static void subtract(const sf_state *s, int32_t a, int32_t b, double out[3]) {
-    sf_sub3(&s->self_position[3 * (int64_t)a], &s->self_position[3 * (int64_t)b], out);
+/* True if a facet is the last partner or meets it: the same contact goes on. */
+static bool goes_on(const sf_skin *skin, int64_t last, int64_t partner) {
+    bool on = last == partner;
+    for (int a = 0; a < 3 && last >= 0 && partner >= 0; a++)
+        for (int b = 0; b < 3; b++)
+            on = on || skin->facet[3 * last + a] == skin->facet[3 * partner + b];
+    return on;
 }
 
-/* The lean of the pair's node `node`, which becomes a part if it is none yet. */
-static void set_lean(sf_contact_pair *q, int32_t node, const double lean[3]) {
-    int k = 0;
-    while (k < q->parts && q->part[k] != node)
-        k++;
-    if (k == q->parts) {
-        q->part[q->parts++] = node;
-        q->share[k] = 0;
+/* A search for the partner of a point. */
+typedef struct search {
+    const sf_scene *scene;
+    int64_t point, last; /* and its partner in the last step */
+    double nearest;      /* m, distance of the pair that is the nearest so far */
+    double back;         /* m, part of its gap that the step takes back */
+    sf_contact_pair *out, *passed;
+} search;
+
+/* Takes the pair with a partner if it closes in the step and is nearer than those before. */
+static void try_partner(search *t, const sf_shape *shape, int64_t partner) {
+    const sf_scene *c = t->scene;
+    sf_contact_pair q;
+    q.node = t->point;
+    q.facet = partner;
+    q.leans = false;
+    q.missile = NULL;
+    if (!shape->meet(c, t->point, partner, &q) || fabs(q.gap) >= t->nearest)
+        return;
+    bool on = goes_on(c->skin, t->last, partner);
+    double deepest = (on ? shape->deepest : shape->entry) * c->skin->size[t->point];
+    q.depth = q.missile ? q.depth : -q.gap;
+    if (on && q.depth > deepest && q.depth < 2 * deepest)
+        *t->passed = q;
+    if (q.depth > deepest)
+        return;
+    if (partner < 0) {
+        memset(q.weight, 0, sizeof q.weight);
+        sf_pair_list_parts(c->skin, &q);
     }
-    memcpy(q->lean[k], lean, sizeof q->lean[k]);
+    if (!q.missile)
+        sf_pair_relative(&q, c->at->step, q.step);
+    double back = sf_pair_acts(c, &q) ? fmax(q.gap, -shape->back * c->state->dt) : q.gap;
+    if (back + sf_dot3(q.step, q.normal) >= 0)
+        return;
+    t->nearest = fabs(q.gap);
+    t->back = back;
+    *t->out = q;
 }
 
-/* The lean of a node is gap times the gradient of its share, as a weight of the triangle n, less the part
- * that answers forces along the normal. */
-void sf_pair_lean(const sf_state *s, const int32_t n[3], sf_contact_pair *q) {
-    double side[3][3], own[3], lean[3];
-    for (int k = 0; k < 3; k++)
-        subtract(s, n[(k + 2) % 3], n[(k + 1) % 3], side[k]);
-    sf_cross3(side[0], side[1], own);
-    double square = sf_dot3(own, own), across = sf_dot3(own, q->normal);
-    q->leans = true;
-    memset(q->lean, 0, sizeof q->lean);
-    for (int k = 0; k < 3 && square > 0; k++) {
-        sf_cross3(own, side[k], lean);
-        double back = sf_dot3(lean, q->normal) / across;
-        for (int r = 0; r < 3; r++)
-            lean[r] = q->gap / square * (lean[r] - back * own[r]);
-        set_lean(q, n[k], lean);
+/* Completes a pair that is taken, of whose gap the step takes `back` (m); corner: nodes for its leans, or
+ * NULL. */
+static void complete(const sf_scene *c, double back, const int32_t *corner, sf_contact_pair *q) {
+    q->friction = sf_pair_friction(c, q);
+    if (q->friction > 0 && corner) {
+        sf_pair_lean(c, corner, q);
+        sf_pair_relative(q, c->at->step, q->step);
     }
+    q->gap = back;
 }
+
+bool sf_pair_find(const sf_scene *c, int64_t p, sf_contact_pair *out, sf_contact_pair *passed) {
+    const sf_skin *skin = c->skin;
+    const sf_body *body = c->body;
+    search t = {.scene = c,
+                .point = p,
+                .last = sf_pair_last(c, p),
+                .nearest = INFINITY,
+                .out = out,
+                .passed = passed};
+    passed->node = -1;
+    if (c->response) {
+        int own = sf_skin_body(skin, p);
+        try_partner(&t, own == SF_BODY_MISSILE ? body[own].shape : &sf_shape_plane, SF_FIRST_BODY - own);
+    } else {
+        const int32_t *facet = &c->at->candidate[SF_SELF_CANDIDATES * p];
+        for (int k = 0; k < SF_SELF_CANDIDATES && facet[k] != SF_NO_PARTNER; k++)
+            try_partner(&t, &sf_shape_face, facet[k]);
+        for (int k = 0; k < SF_BODY_MISSILE; k++)
+            if (body[k].shape && sf_skin_is_stopped(skin, p, k))
+                try_partner(&t, body[k].shape, SF_FIRST_BODY - k);
+    }
+    if (!(t.nearest < INFINITY))
+        return false;
+    passed->node = -1;
+    out->body = sf_pair_body(c, p, out->facet);
+    complete(c, t.back, out->body == SF_BODY_PAD ? &skin->facet[3 * out->facet] : NULL, out);
+    return true;
+}
+
+/* ---- edges of the pad ---- */
 
 /* 1 or -1 if both faces at an edge fall away from the plane through it, against n or -n; 0 otherwise. */
-static int falls_away(const sf_state *s, const int32_t edge[4], const double n[3]) {
+static int falls_away(const sf_contact_points *at, const int32_t edge[4], const double n[3]) {
     int side = 0;
     for (int k = 2; k < 4; k++) {
         double arm[3];
-        subtract(s, edge[k] < 0 ? edge[2] : edge[k], edge[0], arm);
-        if (edge[k] < 0)
-            arm[-1 - edge[k]] *= -1;
+        sf_skin_third(at->position, edge, k, arm);
         double slope = sf_dot3(arm, n), least = SLOPE * sqrt(sf_dot3(arm, arm));
         side += slope < -least ? 1 : slope > least ? -1 : 0;
     }
@@ -97,65 +136,68 @@ static void straighten(const sf_skin *skin, const int32_t in[4], int32_t edge[4]
     }
 }
 
-bool sf_pair_cross(const double u[3], const double v[3], const double between[3], double least, double n[3],
-                   double place[2]) {
-    double moment[3];
-    sf_cross3(u, v, n);
-    double square = sf_dot3(n, n);
-    if (!(square > least * least * sf_dot3(u, u) * sf_dot3(v, v)))
-        return false;
-    sf_cross3(between, v, moment);
-    place[0] = sf_dot3(moment, n) / square;
-    sf_cross3(between, u, moment);
-    place[1] = sf_dot3(moment, n) / square;
-    sf_unit3(n);
-    return true;
+/* The nodes of an edge, the lower number first, and its direction. */
+static void take_edge(const sf_scene *c, int64_t line, int32_t edge[4], double along[3]) {
+    const int32_t *from = &c->skin->line[4 * line];
+    bool rises = from[0] < from[1];
+    edge[0] = from[!rises];
+    edge[1] = from[rises];
+    memcpy(&edge[2], &from[2], 2 * sizeof *edge);
+    subtract(c->at, edge[1], edge[0], along);
 }
 
 /* The pair of two edges that cross. */
-static bool meet_edge(const sf_skin *skin, const sf_state *s, int64_t one, int64_t other,
-                      sf_contact_pair *out) {
-    int32_t a[4], c[4];
+static bool meet_edge(const sf_scene *c, int64_t one, int64_t other, sf_contact_pair *out) {
+    const sf_skin *skin = c->skin;
+    int32_t a[4], b[4];
     double u[3], v[3], between[3], n[3], place[2];
-    memcpy(a, &skin->edge[4 * one], sizeof a);
-    memcpy(c, &skin->edge[4 * other], sizeof c);
-    subtract(s, a[1], a[0], u);
-    subtract(s, c[1], c[0], v);
-    straighten(skin, a, c, v);
-    straighten(skin, c, a, u);
-    subtract(s, c[0], a[0], between);
+    take_edge(c, one, a, u);
+    take_edge(c, other, b, v);
+    straighten(skin, a, b, v);
+    straighten(skin, b, a, u);
+    subtract(c->at, b[0], a[0], between);
     if (!sf_pair_cross(u, v, between, CROSSING, n, place))
         return false;
     double at = place[0], there = place[1];
-    int side = falls_away(s, c, n);
+    int side = falls_away(c->at, b, n);
     if (fabs(at - 0.5) > 0.5 + BEYOND || fabs(there - 0.5) > 0.5 + BEYOND || side == 0 ||
-        falls_away(s, a, n) != -side)
+        falls_away(c->at, a, n) != -side)
         return false;
     *out = (sf_contact_pair){.node = a[at > 0.5],
-                             .facet = skin->ring[skin->ring_ptr[c[0]]],
+                             .facet = skin->ring[skin->ring_ptr[b[0]]],
+                             .body = SF_BODY_PAD,
                              .gap = -side * sf_dot3(between, n),
                              .parts = 4,
-                             .part = {a[0], a[1], c[0], c[1]},
+                             .part = {a[0], a[1], b[0], b[1]},
                              .share = {1 - at, at, there - 1, -there},
                              .normal = {side * n[0], side * n[1], side * n[2]}};
     return true;
 }
 
-int64_t sf_pair_edges(const sf_skin *skin, const sf_state *s, double back, sf_contact_pair *pair) {
+int64_t sf_pair_edges(const sf_scene *c, sf_contact_pair *pair) {
+    const sf_skin *skin = c->skin;
+    double back = sf_shape_face.back * c->state->dt;
     int64_t count = 0;
-    for (int64_t e = 0; e < 2 * skin->edge_count; e++) {
-        int64_t node = skin->edge[4 * (e / 2) + e % 2];
-        const int32_t *near = &s->self_candidate[SF_SELF_CANDIDATES * node];
-        for (int k = 0; k < 3 * SF_SELF_CANDIDATES && near[k / 3] >= 0 && count < skin->edge_count; k++) {
-            sf_contact_pair q;
-            double ahead[3];
-            int64_t other = skin->edge_of[3 * (int64_t)near[k / 3] + k % 3];
-            if (other <= e / 2 || !meet_edge(skin, s, e / 2, other, &q) || q.node != node ||
-                q.gap < -DEEPEST * skin->size[node])
+    for (int64_t e = 0; e < 2 * skin->line_count && skin->sharp_count > 0; e++) {
+        const int32_t *line = &skin->line[4 * (e / 2)];
+        int64_t node = line[e % 2 == (line[0] > line[1]) ? 0 : 1];
+        const int32_t *near = &c->at->candidate[SF_SELF_CANDIDATES * node];
+        for (int k = 0; skin->is_sharp[e / 2] && k < 3 * SF_SELF_CANDIDATES && near[k / 3] >= 0 &&
+                        count < skin->sharp_count;
+             k++) {
+            sf_contact_pair *q = &pair[count];
+            int64_t other = skin->line_of[3 * (int64_t)near[k / 3] + k % 3];
+            if (other <= e / 2 || !skin->is_sharp[other] || !meet_edge(c, e / 2, other, q) ||
+                q->node != node || q->gap < -EDGE_DEEPEST * skin->size[node])
                 continue;
-            sf_pair_relative(&q, s->self_step, ahead);
-            if (fmax(q.gap, -back) + sf_dot3(ahead, q.normal) < 0)
-                pair[count++] = q;
+            q->depth = -q->gap;
+            sf_pair_relative(q, c->at->step, q->step);
+            const int32_t corner[3] = {q->part[0], q->part[1], q->part[q->share[3] < -0.5 ? 2 : 3]};
+            double gap = fmax(q->gap, -back);
+            if (gap + sf_dot3(q->step, q->normal) >= 0)
+                continue;
+            complete(c, gap, corner, q);
+            count++;
         }
     }
     return count;

@@ -5,6 +5,7 @@
 #include "base/sets.h"
 
 static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
+    skin->faces = m->skin_count;
     skin->facet_count = m->skin_count + m->support_triangle_count;
     skin->facet = sf_alloc(err, 3 * skin->facet_count, sizeof *skin->facet, "skin of the pad");
     SF_TRY(err->status);
@@ -142,8 +143,16 @@ static sf_status part_sides(sf_skin *skin, sf_error *err) {
     return SF_OK;
 }
 
-static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
+sf_skin_planes sf_skin_find_planes(const sf_model *m) {
     static const double ON_PLANE = 1e-6; /* of the thickness */
+    sf_skin_planes out = {.near = ON_PLANE * m->thickness};
+    for (int r = 0; r < 2; r++)
+        out.place[r] = sf_symmetry_plane(m, r, &out.place[r]) ? out.place[r] : NAN;
+    return out;
+}
+
+static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
+    const sf_skin_planes planes = sf_skin_find_planes(m);
     SF_OWNED uint8_t *mark = sf_alloc(err, m->node_count, 1, "skin of the pad");
     SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->held, skin->count), SF_ROOM(skin->rests, skin->count));
     for (int64_t k = 0; err->status == SF_OK && k < m->fixed_count; k++)
@@ -155,59 +164,74 @@ static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
         skin->rests[p] = mark[skin->node[p]] >> 3;
     }
     for (int64_t p = skin->moving; err->status == SF_OK && p < skin->nodes; p++)
-        for (int axis = 0; axis < 2; axis++) {
-            double place;
-            if (sf_symmetry_plane(m, axis, &place) &&
-                fabs(skin->rest[3 * p + axis] - place) < ON_PLANE * m->thickness)
+        for (int axis = 0; axis < 2; axis++)
+            if (fabs(skin->rest[3 * p + axis] - planes.place[axis]) < planes.near)
                 skin->held[p] |= (uint8_t)(1 << axis);
-        }
     return err->status;
 }
 
-/* Writes an edge, of one or two half edges, to edge [4]. One alone lies in a symmetry plane or at the end of
- * the skin. False: it is not sharp, or not convex. */
-static bool take_edge(const sf_skin *skin, const sf_half_edge *half, int64_t count, int32_t edge[4]) {
-    int64_t one = half[0].slot, other = half[count - 1].slot;
-    const double *normal = &skin->facet_normal[3 * (one / 3)];
-    int in = count > 1 ? 0 : skin->held[half->low] & skin->held[half->high];
-    double arm[3], beyond[3];
-    edge[0] = half->low;
-    edge[1] = half->high;
-    edge[2] = skin->facet[one - one % 3 + (one + 2) % 3];
-    edge[3] = skin->facet[other - other % 3 + (other + 2) % 3];
-    for (int r = 0; r < 3; r++) {
-        double turned = r == in - 1 ? -1 : 1;
-        arm[r] = turned * (skin->rest[3 * (int64_t)edge[3] + r] - skin->rest[3 * (int64_t)edge[0] + r]);
-        beyond[r] = turned * skin->facet_normal[3 * (other / 3) + r];
-    }
-    if (in == SF_FIX_X || in == SF_FIX_Y)
-        edge[3] = -in;
-    return (count == 2 || edge[3] < 0) && sf_dot3(normal, arm) < 0 && sf_dot3(normal, beyond) <= SHARP;
+/* 1 or 2 if both points lie in the symmetry plane normal to x or y, 0 if not. */
+static int plane_of(const sf_skin *skin, const sf_skin_planes *planes, int64_t a, int64_t b) {
+    for (int r = 0; r < 2; r++)
+        if (fabs(skin->rest[3 * a + r] - planes->place[r]) < planes->near &&
+            fabs(skin->rest[3 * b + r] - planes->place[r]) < planes->near)
+            return r + 1;
+    return 0;
 }
 
-/* Lists the sharp edges of the pad's facets, `count` of them, that are convex. */
-static sf_status list_edges(int64_t count, sf_skin *skin, sf_error *err) {
-    SF_OWNED sf_half_edge *half = sf_half_edges(count, skin->facet, err);
-    SF_TRY(SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->edge, 12 * (unsigned long)count),
-                        SF_ROOM(skin->edge_of, 3 * skin->facet_count)));
-    memset(skin->edge_of, -1, 3 * (size_t)skin->facet_count * sizeof *skin->edge_of);
-    for (int64_t k = 0, end; k < 3 * count && !skin->watched; k = end) {
-        end = sf_half_edges_end(half, k, 3 * count);
-        if (end - k <= 2 && take_edge(skin, &half[k], end - k, &skin->edge[4 * skin->edge_count]))
-            skin->edge_of[half[k].slot] = (int32_t)skin->edge_count++;
+/* True if the faces at a line, of two half edges or one in a symmetry plane, are sharp and convex. */
+static bool is_convex(const sf_skin *skin, const int32_t line[4], int64_t one, int64_t other) {
+    const double *normal = &skin->facet_normal[3 * (one / 3)];
+    double arm[3], beyond[3];
+    sf_skin_third(skin->rest, line, 3, arm);
+    memcpy(beyond, &skin->facet_normal[3 * (other / 3)], sizeof beyond);
+    if (line[3] < 0)
+        beyond[-1 - line[3]] *= -1;
+    return sf_dot3(normal, arm) < 0 && sf_dot3(normal, beyond) <= SHARP;
+}
+
+static sf_status alloc_lines(sf_skin *skin, int64_t most, sf_error *err) {
+    SF_TRY(SF_ALLOC_ALL(err, "edges of the pad", SF_ROOM(skin->line, 4 * most), SF_ROOM(skin->is_sharp, most),
+                        SF_ROOM(skin->line_of, 3 * skin->facet_count)));
+    memset(skin->line_of, -1, 3 * (size_t)skin->facet_count * sizeof *skin->line_of);
+    return SF_OK;
+}
+
+/* Lists the edges of two faces; in a symmetry plane the second one is the mirror image of the first. */
+static sf_status list_lines(const sf_model *m, sf_skin *skin, sf_error *err) {
+    const sf_skin_planes planes = sf_skin_find_planes(m);
+    int64_t count = 3 * skin->faces;
+    SF_OWNED sf_half_edge *half = sf_half_edges(skin->faces, skin->facet, err);
+    SF_TRY(alloc_lines(skin, count, err));
+    for (int64_t k = 0, end; k < count; k = end) {
+        end = sf_half_edges_end(half, k, count);
+        int plane = end == k + 1 ? plane_of(skin, &planes, half[k].low, half[k].high) : 0;
+        if (end != k + 2 && plane == 0)
+            continue;
+        int64_t one = half[k].slot, other = half[end - 1].slot;
+        int32_t *line = &skin->line[4 * skin->line_count];
+        line[0] = skin->facet[one];
+        line[1] = skin->facet[one - one % 3 + (one + 1) % 3];
+        line[2] = skin->facet[one - one % 3 + (one + 2) % 3];
+        line[3] = plane > 0 ? -plane : skin->facet[other - other % 3 + (other + 2) % 3];
+        skin->line_of[one] = (int32_t)skin->line_count;
+        skin->is_sharp[skin->line_count] =
+            skin->facet_normal && !skin->watched && is_convex(skin, line, one, other);
+        skin->sharp_count += skin->is_sharp[skin->line_count++];
     }
     return SF_OK;
 }
 
-static void find_planes(const sf_model *m, sf_skin *skin) {
-    double low[3], high[3], place;
-    sf_box3(m->node_count, m->position, low, high);
-    if (m->anvil.depth > 0)
-        skin->plane[SF_SKIN_ANVIL] = (sf_skin_plane){2, sf_model_anvil_plane(m, high[2]), 1};
-    for (int axis = 0; axis < 2; axis++)
-        if (sf_symmetry_plane(m, axis, &place))
-            skin->plane[SF_SKIN_SYMMETRY_X + axis] =
-                (sf_skin_plane){axis, place, low[axis] < place - 0.5 * skin->spacing ? -1 : 1};
+/* Lists the sides of a section. */
+static sf_status list_sides(sf_skin *skin, sf_error *err) {
+    SF_TRY(alloc_lines(skin, skin->faces, err));
+    for (; skin->line_count < skin->faces; skin->line_count++) {
+        const int32_t *side = &skin->facet[3 * skin->line_count];
+        memcpy(&skin->line[4 * skin->line_count],
+               (const int32_t[4]){side[0], side[1], SF_NO_FACES, SF_NO_FACES}, 4 * sizeof *side);
+        skin->line_of[3 * skin->line_count] = (int32_t)skin->line_count;
+    }
+    return SF_OK;
 }
 
 /* True if the pad's nodes may miss the support near its node p: at an edge, where the facets round it are no
@@ -242,7 +266,7 @@ static sf_status mark_passive(sf_skin *skin, sf_error *err) {
 
 /* The rows of the pad's nodes; those of the support and of the centroids are empty. */
 static sf_status build_rows(const sf_model *m, sf_skin *skin, sf_error *err) {
-    SF_TRY(sf_contact_rows_of_nodes(m, skin->moving, skin->node, &skin->rows, err));
+    SF_TRY(sf_contact_rows_build(m, skin->moving, skin->node, &skin->rows, err));
     int64_t *ptr = realloc(skin->rows.ptr, ((size_t)skin->count + 1) * sizeof *ptr);
     if (!ptr)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the skin of the pad");
@@ -259,17 +283,42 @@ sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
     if (number_nodes(m, skin, err) != SF_OK || place_nodes(m, skin, err) != SF_OK ||
         list_rings(skin, err) != SF_OK || find_normals(skin, err) != SF_OK ||
         part_sides(skin, err) != SF_OK || mark_held(m, skin, err) != SF_OK ||
-        list_edges(m->skin_count, skin, err) != SF_OK || mark_passive(skin, err) != SF_OK ||
+        list_lines(m, skin, err) != SF_OK || mark_passive(skin, err) != SF_OK ||
         build_rows(m, skin, err) != SF_OK)
         sf_skin_free(skin);
-    else if (!skin->alone)
-        find_planes(m, skin);
+    return err->status;
+}
+
+static sf_status build_contact(const sf_model *m, sf_skin *skin, sf_error *err) {
+    int64_t count = skin->count = skin->nodes = skin->moving = sf_model_points(m);
+    skin->faces = skin->facet_count = m->contact_face_count;
+    SF_TRY(SF_ALLOC_ALL(err, "contact points", SF_ROOM(skin->node, count), SF_ROOM(skin->rest, 3 * count),
+                        SF_ROOM(skin->size, count), SF_ROOM(skin->rests, count),
+                        SF_ROOM(skin->facet, 3 * skin->faces)));
+    for (int64_t c = 0; c < count; c++) {
+        int64_t node = skin->node[c] = (int32_t)sf_model_point_node(m, c);
+        memcpy(&skin->rest[3 * c], &m->position[3 * node], 3 * sizeof *skin->rest);
+        skin->size[c] = m->spacing[node];
+        skin->rests[c] = sf_model_point_rests(m, c);
+        skin->spacing = skin->rests[c] ? skin->spacing : fmin(skin->spacing, skin->size[c]);
+    }
+    for (int64_t k = 0; k < 3 * skin->faces; k++)
+        skin->facet[k] = (int32_t)sf_list_find(m->contact_node, 0, m->contact_count, m->contact_face[k]);
+    if (skin->faces > 0)
+        SF_TRY(m->axisymmetric ? list_sides(skin, err) : list_lines(m, skin, err));
+    return sf_contact_rows_build(m, count, skin->node, &skin->rows, err);
+}
+
+sf_status sf_skin_build_contact(const sf_model *m, sf_skin *skin, sf_error *err) {
+    *skin = (sf_skin){.spacing = INFINITY};
+    if (build_contact(m, skin, err) != SF_OK)
+        sf_skin_free(skin);
     return err->status;
 }
 
 void sf_skin_free(sf_skin *skin) {
     sf_contact_rows_free(&skin->rows);
-    SF_CLEAR(skin, skin->node, skin->own, skin->side, skin->next_side, skin->edge, skin->edge_of, skin->rest,
-             skin->size, skin->passive, skin->facet, skin->half, skin->ring_ptr, skin->ring, skin->held,
-             skin->rests, skin->normal, skin->facet_normal);
+    SF_CLEAR(skin, skin->node, skin->own, skin->side, skin->next_side, skin->line, skin->line_of,
+             skin->is_sharp, skin->rest, skin->size, skin->passive, skin->facet, skin->half, skin->ring_ptr,
+             skin->ring, skin->held, skin->rests, skin->normal, skin->facet_normal);
 }

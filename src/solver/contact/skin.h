@@ -1,23 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
+#include "base/mat3.h"
 #include "solver/contact/contact_rows.h"
+#include "solver/contact/shape.h"
 
-/* The faces of the pad that may touch the pad itself, the anvil, a symmetry plane or the rigid support, with
- * those of the support behind them, as the solver needs them (solver/contact/self_contact.h). */
+/* Points and faces of the pad in one solve of contact (contact/contact.h). Those of the skin may touch the
+ * pad itself, the anvil, a symmetry plane or the rigid supports, whose faces are behind them. The contact
+ * points touch the missile, and behind them the base of a resting pad the anvil; their faces are those that
+ * sharp edges of the missile may press. */
 
-/* A plane that stops the pad: that of the anvil, and those of symmetry, beyond which its mirror image is. */
-enum {
-    SF_SKIN_NOTHING = -1,
-    SF_SKIN_FIRST_PLANE = -2
-}; /* partners of a node that are no facet; plane k: FIRST_PLANE - k */
-enum { SF_SKIN_ANVIL, SF_SKIN_SYMMETRY_X, SF_SKIN_SYMMETRY_Y, SF_SKIN_PLANES };
-typedef struct sf_skin_plane {
-    int axis;     /* of its normal */
-    double place; /* m, on that axis */
-    double side;  /* 1 or -1: the pad lies above or below it on that axis; 0: there is no plane */
-} sf_skin_plane;
-
-/* Constants of the skin. Its points are numbered from 0: first the nodes of the pad, ascending in the model,
+/* Constants. The points of the skin are numbered from 0: first the nodes of the pad, ascending in the model,
  * then those of the support, which do not move, then the centroids of the pad's triangles, which are the mean
  * of three nodes. */
 typedef struct sf_skin {
@@ -28,33 +20,45 @@ typedef struct sf_skin {
     int32_t *own;   /* [count - nodes] facet of each centroid */
     double *rest;   /* [count][3] m, position at rest */
     double *size;   /* [count] m, spacing; of a support's node the least of the pad */
+    int64_t faces;  /* of the pad, the first facets */
     int64_t facet_count;
-    int32_t *facet;    /* [facet_count][3] nodes of the skin, turned outwards */
-    uint8_t *half;     /* [facet_count] as of sf_model.skin_half */
+    int32_t *facet; /* [facet_count][3] nodes of the skin, turned outwards; of a section two and the first */
+    uint8_t *half;  /* [facet_count] as of sf_model.skin_half */
     int64_t *ring_ptr; /* [count + 1] */
     int32_t *ring;     /* [..] facets at each node; of a centroid its own */
     /* The parts into which sharp edges cut the surface round a node, its sides, have a normal each. The first
      * side of a point has its number. */
     int32_t *side;      /* [facet_count][3] of the facet's nodes that the facet belongs to */
     int32_t *next_side; /* [..] next side of the same node; -1: none */
-    /* The sharp convex edges of a pad that touches itself: two nodes, and the third nodes of both facets; -1
-     * or -2 for the mirror image of the first facet, beyond the symmetry plane normal to x or y. */
-    int64_t edge_count;
-    int32_t *edge;    /* [edge_count][4] */
-    int32_t *edge_of; /* [facet_count][3] from a facet's node to its next, at one facet; -1: none */
+    /* The edges of two of the pad's faces: two nodes, and the third nodes of both; -1 or -2 for the mirror
+     * image of the first face, beyond the symmetry plane normal to x or y. Of a section the sides,
+     * counter-clockwise, and two times SF_NO_FACES. */
+    int64_t line_count;
+    int32_t *line;       /* [line_count][4] */
+    int32_t *line_of;    /* [facet_count][3] from a facet's node to its next, at one facet; -1: none */
+    uint8_t *is_sharp;   /* [line_count] 1: it is convex, and sharp, in a pad that touches itself */
+    int64_t sharp_count; /* such edges */
     uint8_t *held;    /* [count] SF_FIX_* bits; of a support's node those of the symmetry planes it is on */
     uint8_t *passive; /* [count] 1: touches no support: on a flat part of one, or a centroid */
-    uint8_t *rests;   /* [count] 1: the anvil presses the node in the missile's solve (contact.h) */
+    uint8_t *rests;   /* [count] 1: the anvil presses the node among the contact points */
     double *normal;   /* [count][3] outward at rest, unit */
     double *facet_normal; /* [facet_count][3] likewise */
     bool alone;           /* the pad touches the supports only */
     bool watched;         /* its pairs with itself have no forces */
-    sf_skin_plane plane[SF_SKIN_PLANES];
-    double spacing; /* m, smallest of the skin */
+    double spacing;       /* m, smallest of the skin, or of the points that the missile may touch */
     sf_contact_rows rows;
 } sf_skin;
 
+enum { SF_NO_FACES = -3 };
+
+/* The symmetry planes (m), NAN where there is none, and how near (m) to one a point lies in it. */
+typedef struct sf_skin_planes {
+    double place[2], near;
+} sf_skin_planes;
+sf_skin_planes sf_skin_find_planes(const sf_model *model);
+
 sf_status sf_skin_build(const sf_model *model, sf_skin *skin, sf_error *err);
+sf_status sf_skin_build_contact(const sf_model *model, sf_skin *skin, sf_error *err);
 void sf_skin_free(sf_skin *skin);
 
 static inline bool sf_skin_is_rigid(const sf_skin *skin, int64_t node) {
@@ -69,16 +73,23 @@ static inline int64_t sf_skin_member(const sf_skin *skin, int64_t point, int k) 
     return point < skin->nodes ? point : skin->facet[3 * (int64_t)skin->own[point - skin->nodes] + k];
 }
 
-/* True if plane k may stop the node: not if it is held there, or rests on the anvil already. */
-static inline bool sf_skin_is_stopped(const sf_skin *skin, int64_t node, int k) {
-    return skin->plane[k].side != 0 && node < skin->moving &&
-           !((skin->held[node] >> skin->plane[k].axis) & 1) && !(k == SF_SKIN_ANVIL && skin->rests[node]);
+/* True if a plane may stop the node: not if it is held there, or rests on the anvil already. */
+static inline bool sf_skin_is_stopped(const sf_skin *skin, int64_t node, int plane) {
+    int axis = plane == SF_BODY_ANVIL ? 2 : plane - SF_BODY_SYMMETRY_X;
+    return !skin->alone && node < skin->moving && !((skin->held[node] >> axis) & 1) &&
+           !(plane == SF_BODY_ANVIL && skin->rests[node]);
 }
 
-/* Height (m) of the point x over plane k. */
-static inline double sf_skin_height(const sf_skin *skin, const double x[3], int k) {
-    const sf_skin_plane *plane = &skin->plane[k];
-    return plane->side * (x[plane->axis] - plane->place);
+/* Returns the body that a contact point may touch. */
+static inline int sf_skin_body(const sf_skin *contact, int64_t point) {
+    return contact->rests[point] ? SF_BODY_ANVIL : SF_BODY_MISSILE;
+}
+
+/* The vector from the first node of a line to its third node number k, 2 or 3. */
+static inline void sf_skin_third(const double *position, const int32_t line[4], int k, double out[3]) {
+    sf_sub3(&position[3 * (int64_t)line[line[k] < 0 ? 2 : k]], &position[3 * (int64_t)line[0]], out);
+    if (line[k] < 0)
+        out[-1 - line[k]] *= -1;
 }
 
 /* The nodes among which a force on a facet is shared: 4 of a quadrangle, 3 of a triangle; 0 of a plane, whose

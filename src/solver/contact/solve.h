@@ -8,7 +8,7 @@
  * that the pairs begin with. There is no penalty: no stored contact energy, no stiffness that limits the time
  * step. The sweeps are serial: the same bits for any number of threads. */
 #pragma once
-#include "solver/contact/pairs.h"
+#include "solver/contact/pair.h"
 
 /* The pairs of a step, and how they are solved. */
 typedef struct sf_contact_system {

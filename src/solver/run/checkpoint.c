@@ -58,10 +58,10 @@ static sf_status check(const sf_model *m, const sf_state *s, sf_error *err) {
                        (long long)s->step, s->time, s->dt, (long long)s->jacobian_node);
     int64_t facets = m->skin_count + m->support_triangle_count;
     for (int64_t p = 0; p < sf_state_rows(m, 's'); p++)
-        if (s->self_partner[p] >= facets || s->self_partner[p] < -1 - SF_SKIN_PLANES)
+        if (s->skin.partner[p] >= facets || s->skin.partner[p] <= SF_FIRST_BODY - SF_BODY_MISSILE)
             return SF_FAIL(err, SF_ERR_IO,
                            "the checkpoint's state is not possible: point %lld touches facet %d of %lld",
-                           (long long)p, s->self_partner[p], (long long)facets);
+                           (long long)p, s->skin.partner[p], (long long)facets);
     return SF_OK;
 }
 

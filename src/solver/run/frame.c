@@ -99,7 +99,7 @@ static void take_pressure(const sf_model *m, const sf_state *s, int64_t first, i
          c < m->contact_count && m->contact_node[c] < end; c++) {
         const double *force = &sf_state_load(m, s)[3 * c];
         if (m->contact_area[c] > 0 && sf_dot3(force, force) > 0) /* a normal without a force may be any */
-            out[m->contact_node[c] - first] = sf_dot3(force, &s->contact_normal[3 * c]) / m->contact_area[c];
+            out[m->contact_node[c] - first] = sf_dot3(force, &s->contact.normal[3 * c]) / m->contact_area[c];
     }
 }
 

@@ -143,8 +143,8 @@ enum { FIRST_ROWS = 4096 };
 static double area_in_contact(const sf_model *m, const sf_state *s) {
     double area = 0;
     const double *load = sf_state_load(m, s);
-    for (int64_t n = 0; n < s->contact_near_count; n++) {
-        int64_t k = s->contact_near[n];
+    for (int64_t n = 0; n < s->contact.close_count; n++) {
+        int64_t k = s->contact.close[n];
         if (!sf_model_point_rests(m, k) && sf_dot3(&load[3 * k], &load[3 * k]) > 0)
             area += m->contact_area[k];
     }

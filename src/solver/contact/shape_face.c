@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Faces of the pad and of supports. A node touches a face only if it comes from outside: one that lies deeper
+ * behind a face than it may, as behind the other side of a thin wall, does not see it. */
+#include "solver/contact/shape_face.h"
+
+static const double OPPOSED = -0.5; /* largest cosine of the normals of a node and the face that it touches */
+static const double EDGE = 0.05;    /* of a face, in its barycentric coordinates: it reaches so far beyond */
+
+static double *side_normal(const sf_scene *c, int64_t f, int corner) {
+    return &c->at->side[3 * (int64_t)c->skin->side[3 * f + corner]];
+}
+
+void sf_faces_turn(const sf_scene *c) {
+    const sf_skin *skin = c->skin;
+    double *normal = c->at->side;
+    for (int64_t k = 0; k < c->at->close_count; k++) {
+        int64_t p = c->at->close[k];
+        bool node = p < skin->nodes; /* centroids come behind their nodes */
+        for (int64_t side = p; side >= 0; side = skin->next_side[side])
+            memset(&normal[3 * side], 0, 3 * sizeof *normal);
+        for (int64_t e = skin->ring_ptr[p]; e < skin->ring_ptr[p + 1]; e++) {
+            int64_t f = skin->ring[e];
+            double one[3];
+            sf_facet_normal(c, f, one);
+            for (int corner = 0; corner < 3; corner++) {
+                double *of = side_normal(c, f, corner), *sum = node ? of : &normal[3 * p];
+                for (int r = 0; r < 3 && (!node || skin->facet[3 * f + corner] == p); r++)
+                    sum[r] += node ? one[r] : of[r];
+            }
+        }
+        for (int64_t side = p; side >= 0; side = skin->next_side[side]) {
+            for (int r = 0; r < 3; r++) /* the other half lies beyond a symmetry plane */
+                normal[3 * side + r] *= !((skin->held[p] >> r) & 1);
+            sf_unit3(&normal[3 * side]);
+        }
+    }
+}
+
+/* The normal of point p as seen from a facet of the unit normal `facing`: that of its only side, or the mean
+ * of its sides, each by how far it looks against the facet. False if none does. */
+static bool normal_against(const sf_scene *c, int64_t p, const double facing[3], double out[3]) {
+    const int32_t *next = c->skin->next_side;
+    memset(out, 0, 3 * sizeof *out);
+    for (int64_t side = p; side >= 0; side = next[side]) {
+        const double *normal = &c->at->side[3 * side];
+        double against = OPPOSED - sf_dot3(normal, facing);
+        for (int r = 0; r < 3 && against > 0; r++)
+            out[r] += next[p] < 0 ? normal[r] : against * normal[r];
+    }
+    if (next[p] >= 0)
+        sf_unit3(out);
+    return sf_dot3(out, out) > 0;
+}
+
+/* Finds the gap at x along the pair's normal of the plane through the nodes n, with its `own` normal of twice
+ * its area, and the weights of the nodes there. False: the plane is tilted against the normal. */
+static bool project(const sf_scene *c, const sf_contact_pair *q, const int32_t n[3], const double own[3],
+                    double *gap, double weight[3]) {
+    const double *x = &c->at->position[3 * q->node], *corner[3];
+    double arm[3], point[3], across = sf_dot3(q->normal, own);
+    if (!(across > 0.5 * sqrt(sf_dot3(own, own))))
+        return false;
+    sf_corners(c->at->position, n, corner);
+    sf_sub3(x, corner[0], arm);
+    *gap = sf_dot3(arm, own) / across;
+    for (int r = 0; r < 3; r++)
+        point[r] = x[r] - *gap * q->normal[r];
+    sf_triangle_weights(corner, point, own, weight);
+    return true;
+}
+
+/* Takes the mean of both ways to cut a quadrangle into halves, of gap and weights. One way alone passes no
+ * uniform pressure on between faces that do not match: no forces that press are in equilibrium with it. */
+static void take_both_diagonals(const sf_scene *c, sf_contact_pair *q) {
+    int tip = c->skin->half[q->facet], next = (tip + 1) % 3, last = (tip + 2) % 3;
+    const int32_t *n = &c->skin->facet[3 * q->facet];
+    int32_t fourth = (int32_t)sf_skin_corner(c->skin, q->facet, 3);
+    for (int side = 0; side < 2; side++) {
+        const int32_t half[3] = {n[tip], side ? fourth : n[next], side ? n[last] : fourth};
+        double own[3], weight[3], gap;
+        sf_face_normal(c->at->position, half, own);
+        if (!project(c, q, half, own, &gap, weight))
+            return;
+        if (side == 0 && weight[1] < 0)
+            continue;
+        for (int k = 0; k < 3; k++)
+            q->weight[k] *= 0.5;
+        q->weight[tip] += 0.5 * weight[0];
+        q->weight[side ? 3 : next] += 0.5 * weight[1];
+        q->weight[side ? last : 3] += 0.5 * weight[2];
+        q->gap = 0.5 * (q->gap + gap);
+        return;
+    }
+}
+
+/* Weights that are rounding cost as much as others: they become zero, and the sum stays one. */
+static void drop_traces(double weight[4]) {
+    static const double TRACE = 1e-12;
+    int largest = weight[1] > weight[0] ? 1 : 0;
+    double rest = 1;
+    for (int k = 2; k < 4; k++)
+        largest = weight[k] > weight[largest] ? k : largest;
+    for (int k = 1; k < 4; k++) {
+        double *own = &weight[(largest + k) % 4];
+        *own = fabs(*own) < TRACE ? 0 : *own;
+        rest -= *own;
+    }
+    weight[largest] = rest;
+}
+
+/* True if a centroid lies on that of a triangle: the nodes of the two carry its part. */
+static bool matches(const sf_skin *skin, const sf_contact_pair *q) {
+    static const double SLIGHTLY = 0.01;
+    double off = fmax(fabs(q->weight[0] - 1.0 / 3), fabs(q->weight[1] - 1.0 / 3));
+    return !skin->half[q->facet] && off < SLIGHTLY;
+}
+
+/* A node lies before or behind the facet, and its own surface looks against it. The normal is the mean of
+ * both surfaces: smooth over the facets, and the same seen from either side, where facets that are tilted
+ * against each other would interlock; of a rigid facet it is that of the support, and for a node of an edge,
+ * which has no normal of its own, that of the facet. The gap is along it, so that the forces on node and
+ * facet lie on one line. */
+static bool meet(const sf_scene *c, int64_t p, int64_t f, sf_contact_pair *q) {
+    const sf_skin *skin = c->skin;
+    const int32_t *n = &skin->facet[3 * f];
+    const double *x = &c->at->position[3 * p], *corner[3];
+    double own[3], facing[3], against[3];
+    sf_facet_normal(c, f, own);
+    double area = sqrt(sf_dot3(own, own));
+    bool alone = skin->next_side[p] >= 0 || sf_skin_is_rigid(skin, p) || sf_skin_is_rigid(skin, n[0]);
+    for (int r = 0; r < 3; r++)
+        facing[r] = own[r] / area;
+    if (!(area > 0) || !normal_against(c, p, facing, against))
+        return false;
+    sf_corners(c->at->position, n, corner);
+    sf_triangle_weights(corner, x, own, q->weight);
+    q->weight[3] = 0;
+    for (int k = 0; k < 3; k++)
+        if (q->weight[k] < -EDGE)
+            return false;
+    for (int r = 0; r < 3; r++) {
+        q->normal[r] = alone ? 0 : -against[r];
+        for (int k = 0; k < 3; k++)
+            q->normal[r] += q->weight[k] * side_normal(c, f, k)[r];
+        q->normal[r] *= !((skin->held[p] >> r) & 1);
+    }
+    sf_unit3(q->normal);
+    if (!project(c, q, n, own, &q->gap, q->weight))
+        return false;
+    if (skin->half[f])
+        take_both_diagonals(c, q);
+    drop_traces(q->weight);
+    sf_pair_list_parts(skin, q);
+    return p < skin->nodes || !matches(skin, q);
+}
+
+const sf_shape sf_shape_face = {.meet = meet, .entry = SF_CONTACT_ENTRY, .deepest = 0.5, .back = 0.1};
