@@ -167,6 +167,7 @@ typedef struct sf_contact_points {
     double *normal; /* [points][3] outward from the missile or the anvil */
     double *load;   /* [points][3] N, by the point itself and by sharp edges; only if there may be some */
     /* The skin alone. */
+    double travel;      /* m, largest motion of a point near in the next step without these forces */
     double *side;       /* [sides][3] outward normal now, unit; of the points in `close` */
     int32_t *partner;   /* [points] what it touches (contact/shape.h) */
     double *weight;     /* [points][4] of the facet's nodes, and of the fourth of its quadrangle */

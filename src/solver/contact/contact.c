@@ -49,6 +49,15 @@ static void move_points(const sf_scene *c, double dt_v) {
     }
 }
 
+static void measure_travel(sf_contact_points *at) {
+    double square = 0;
+    for (int64_t k = 0; k < at->near_count; k++) {
+        const double *step = &at->step[3 * (int64_t)at->near[k]];
+        square = sf_larger(sf_dot3(step, step), square);
+    }
+    at->travel = sqrt(square);
+}
+
 /* Accelerations by the last step's forces of missile and anvil into contact_push: a cover below the missile
  * would else meet the foam without the missile's load. All points are read, as the list of near points is
  * empty after a restart. */
@@ -223,6 +232,7 @@ static sf_status solve(const sf_scene *c, sf_error *err) {
     if (due)
         SF_TRY(sf_broad_list(c, err));
     if (!c->response) {
+        measure_travel(at);
         memset(s->contact_push, 0, 3 * (size_t)c->model->node_count * sizeof *s->contact_push);
         sf_faces_turn(c);
     }

@@ -174,31 +174,37 @@ static bool meet_edge(const sf_scene *c, int64_t one, int64_t other, sf_contact_
     return true;
 }
 
+/* Adds the pairs of sharp edge `one` with those at the candidates of its node `node`. */
+static int64_t add_edges(const sf_scene *c, int64_t one, int64_t node, sf_contact_pair *pair, int64_t count) {
+    const sf_skin *skin = c->skin;
+    const int32_t *near = &c->at->candidate[SF_SELF_CANDIDATES * node];
+    for (int k = 0; k < 3 * SF_SELF_CANDIDATES && near[k / 3] >= 0 && count < skin->sharp_count; k++) {
+        sf_contact_pair *q = &pair[count];
+        int64_t other = skin->line_of[3 * (int64_t)near[k / 3] + k % 3];
+        if (other <= one || !skin->is_sharp[other] || !meet_edge(c, one, other, q) || q->node != node ||
+            q->gap < -EDGE_DEEPEST * skin->size[node])
+            continue;
+        q->depth = -q->gap;
+        sf_pair_relative(q, c->at->step, q->step);
+        const int32_t corner[3] = {q->part[0], q->part[1], q->part[q->share[3] < -0.5 ? 2 : 3]};
+        double gap = fmax(q->gap, -sf_shape_face.back * c->state->dt);
+        if (gap + sf_dot3(q->step, q->normal) >= 0)
+            continue;
+        complete(c, gap, corner, q);
+        count++;
+    }
+    return count;
+}
+
 int64_t sf_pair_edges(const sf_scene *c, sf_contact_pair *pair) {
     const sf_skin *skin = c->skin;
-    double back = sf_shape_face.back * c->state->dt;
     int64_t count = 0;
-    for (int64_t e = 0; e < 2 * skin->line_count && skin->sharp_count > 0; e++) {
-        const int32_t *line = &skin->line[4 * (e / 2)];
-        int64_t node = line[e % 2 == (line[0] > line[1]) ? 0 : 1];
-        const int32_t *near = &c->at->candidate[SF_SELF_CANDIDATES * node];
-        for (int k = 0; skin->is_sharp[e / 2] && k < 3 * SF_SELF_CANDIDATES && near[k / 3] >= 0 &&
-                        count < skin->sharp_count;
-             k++) {
-            sf_contact_pair *q = &pair[count];
-            int64_t other = skin->line_of[3 * (int64_t)near[k / 3] + k % 3];
-            if (other <= e / 2 || !skin->is_sharp[other] || !meet_edge(c, e / 2, other, q) ||
-                q->node != node || q->gap < -EDGE_DEEPEST * skin->size[node])
-                continue;
-            q->depth = -q->gap;
-            sf_pair_relative(q, c->at->step, q->step);
-            const int32_t corner[3] = {q->part[0], q->part[1], q->part[q->share[3] < -0.5 ? 2 : 3]};
-            double gap = fmax(q->gap, -back);
-            if (gap + sf_dot3(q->step, q->normal) >= 0)
-                continue;
-            complete(c, gap, corner, q);
-            count++;
-        }
+    for (int64_t e = 0; e < skin->line_count && skin->sharp_count > 0; e++) {
+        int32_t a = skin->line[4 * e], b = skin->line[4 * e + 1];
+        if (!skin->is_sharp[e])
+            continue;
+        count = add_edges(c, e, a < b ? a : b, pair, count);
+        count = add_edges(c, e, a < b ? b : a, pair, count);
     }
     return count;
 }

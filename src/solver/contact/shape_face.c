@@ -5,6 +5,9 @@
 
 static const double OPPOSED = -0.5; /* largest cosine of the normals of a node and the face that it touches */
 static const double EDGE = 0.05;    /* of a face, in its barycentric coordinates: it reaches so far beyond */
+/* Faces are too far for this step beyond SPREAD times the largest motion of a point, as weights may be below
+ * zero by EDGE, and for quadrangles WARP spacings more, by which both cuts may differ. */
+static const double SPREAD = 2.5, WARP = 0.5;
 
 static double *side_normal(const sf_scene *c, int64_t f, int corner) {
     return &c->at->side[3 * (int64_t)c->skin->side[3 * f + corner]];
@@ -124,15 +127,19 @@ static bool meet(const sf_scene *c, int64_t p, int64_t f, sf_contact_pair *q) {
     const sf_skin *skin = c->skin;
     const int32_t *n = &skin->facet[3 * f];
     const double *x = &c->at->position[3 * p], *corner[3];
-    double own[3], facing[3], against[3];
-    sf_facet_normal(c, f, own);
-    double area = sqrt(sf_dot3(own, own));
+    double own[3], facing[3], against[3], arm[3];
+    sf_corners(c->at->position, n, corner);
+    sf_triangle_normal(corner[0], corner[1], corner[2], own);
+    sf_sub3(x, corner[0], arm);
+    double area = sqrt(sf_dot3(own, own)),
+           reach = SPREAD * c->at->travel + (skin->half[f] ? WARP * skin->size[p] : 0);
+    if (sf_dot3(arm, own) > reach * area)
+        return false;
     bool alone = skin->next_side[p] >= 0 || sf_skin_is_rigid(skin, p) || sf_skin_is_rigid(skin, n[0]);
     for (int r = 0; r < 3; r++)
         facing[r] = own[r] / area;
     if (!(area > 0) || !normal_against(c, p, facing, against))
         return false;
-    sf_corners(c->at->position, n, corner);
     sf_triangle_weights(corner, x, own, q->weight);
     q->weight[3] = 0;
     for (int k = 0; k < 3; k++)
