@@ -209,7 +209,7 @@ def main() -> int:
     parser.add_argument("--foams", type=int, default=200)
     parser.add_argument("--first", type=int, default=0, help="number of the first foam")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
-    parser.add_argument("--spacing", type=float, default=14.0, help="mm, of the mesh")
+    parser.add_argument("--spacing", type=float, default=20.0, help="mm, of the mesh")
     o = parser.parse_args()
     o.folder.mkdir(parents=True, exist_ok=True)
     path = o.folder / "foams.csv"

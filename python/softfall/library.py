@@ -67,7 +67,7 @@ def _call(name: str, *arguments: Any) -> None:
         raise Error("the locale of this process has a decimal comma, with which numbers would be read wrongly: "
                     'locale.setlocale(locale.LC_NUMERIC, "C") mends it', 2)
     error = _Failure()
-    if _load()[name](*arguments, c.byref(error)) != 0:
+    if getattr(_load(), name)(*arguments, c.byref(error)) != 0:
         raise failure(error.text.decode(errors="replace"), error.status)
 
 

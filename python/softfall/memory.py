@@ -259,15 +259,16 @@ class Model:
             lib.softfall_material_free(foam)
 
 
-def _figures(drop: c.c_void_p) -> DropFigures:
+def _figures(drop: c.c_void_p, keys: Sequence[str] = ()) -> DropFigures:
+    """Returns the figures of a drop, all or some."""
     lib, figures, count, value = _load(), c.c_void_p(), c.c_int(), c.c_double()
     library._call("softfall_drop_figures", drop, c.c_double(1000), c.byref(figures))
     try:
-        found = {}
         listed = lib.softfall_figures_list(figures, c.byref(count))
-        for k in range(count.value):
-            library._call("softfall_figure", figures, listed[k].name, c.byref(value))
-            found[listed[k].name.decode()] = value.value
+        found = dict.fromkeys(keys or [listed[k].name.decode() for k in range(count.value)], math.nan)
+        for key in found:
+            library._call("softfall_figure", figures, key.encode(), c.byref(value))
+            found[key] = value.value
         return DropFigures(found, int(lib.softfall_figures_grade(figures)), lib.softfall_figures_verdict(figures).decode(errors="replace"),
                            lib.softfall_figures_status(figures).decode(errors="replace"), float(lib.softfall_figures_sure(figures)))
     finally:

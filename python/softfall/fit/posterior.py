@@ -9,6 +9,7 @@ kappa model_sd/sqrt 2. The mesh is an unknown, too: a factor on the step from th
 """
 from __future__ import annotations
 
+import functools
 import logging
 import math
 import warnings
@@ -43,47 +44,50 @@ COLLAPSED = math.inf
 logging.getLogger("emcee").setLevel(logging.ERROR)  # the effective size is told by us
 
 
-class _Surface(NamedTuple):
-    """One output over the unknowns: a quadratic, and a Gaussian process on what it leaves."""
-
-    weights: Array
-    points: Array
-    alpha: Array
-    size: float
-    length: float
-    rms: float
-
-    def __call__(self, z: Array) -> Array:
-        made = _basis(z) @ self.weights
-        if self.size > 0:
-            apart = ((z[:, None, :] - self.points[None]) ** 2).sum(axis=2)
-            made = made + self.size * np.exp(-0.5 * apart / self.length**2) @ self.alpha
-        return np.asarray(made)
+@functools.lru_cache(maxsize=None)
+def _pairs(n: int) -> tuple[Array, Array]:
+    return np.triu_indices(n)
 
 
 def _basis(z: Array) -> Array:
-    n = z.shape[1]
-    first, second = np.triu_indices(n)
+    first, second = _pairs(z.shape[1])
     return np.concatenate([np.ones((len(z), 1)), z, z[:, first] * z[:, second]], axis=1)
 
 
-def _surface(z: Array, y: Array, process: bool) -> _Surface:
-    """Fits one output to points; the process's length and size follow from the points by their likelihood."""
-    basis = _basis(z)
-    penalty = RIDGE * len(z) * np.eye(basis.shape[1])
-    penalty[:1 + z.shape[1]] = 0.0
-    weights = np.linalg.solve(basis.T @ basis + penalty + 1e-10 * np.eye(basis.shape[1]), basis.T @ y)
-    left: Array = y - basis @ weights
-    scale = float(np.std(left))
-    if not process or scale < 1e-5:
-        return _Surface(weights, z, np.zeros(len(z)), 0.0, 1.0, scale)
-    kernel = ConstantKernel(1.0, (1e-2, 1e2)) * RBF(2.0, (0.5, 20.0)) + WhiteKernel(0.1, (1e-4, 1.0))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)
-        gp = GaussianProcessRegressor(kernel, random_state=0).fit(z, left / scale)
-    made = _Surface(weights, z, scale * np.asarray(gp.alpha_), float(gp.kernel_.k1.k1.constant_value), float(gp.kernel_.k1.k2.length_scale), 0.0)
-    inverse = np.linalg.inv(gp.L_ @ gp.L_.T)
-    return made._replace(rms=float(scale * np.sqrt(np.mean((np.asarray(gp.alpha_) / np.diag(inverse)) ** 2))))  # leave-one-out
+class _Surfaces:
+    """Outputs over the unknowns: of each a quadratic, and a Gaussian process on what it leaves, whose length and size follow from the points by their likelihood."""
+
+    def __init__(self, points: Array) -> None:
+        self.points, self.basis = points, _basis(points)
+        self.weights, self.alpha = np.empty((self.basis.shape[1], 0)), np.empty((len(points), 0))
+        self.nearness = np.empty((points.shape[1], 0))  # 1/2 over the square of the length; 0: the output has nothing of this unknown
+        self.rms: list[float] = []  # of what is left, by leave-one-out
+
+    def add(self, y: Array, good: Array, columns: Array) -> None:
+        """Fits one more output, a function of some unknowns, to the points that have it."""
+        first, second = _pairs(len(columns))
+        known = np.concatenate([[True], columns, columns[first] & columns[second]])
+        basis, z = self.basis[good][:, known], self.points[good][:, columns]
+        penalty = RIDGE * len(z) * np.eye(basis.shape[1])
+        penalty[:1 + z.shape[1]] = 0.0
+        weights, alpha, nearness = np.zeros(len(known)), np.zeros(len(good)), np.zeros(len(columns))
+        weights[known] = np.linalg.solve(basis.T @ basis + penalty + 1e-10 * np.eye(basis.shape[1]), basis.T @ y[good])
+        left: Array = y[good] - basis @ weights[known]
+        scale = rms = float(np.std(left))
+        if scale >= 1e-5:
+            kernel = ConstantKernel(1.0, (1e-2, 1e2)) * RBF(2.0, (0.5, 20.0)) + WhiteKernel(0.1, (1e-4, 1.0))
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", ConvergenceWarning)
+                gp = GaussianProcessRegressor(kernel, random_state=0).fit(z, left / scale)
+            alpha[good] = scale * float(gp.kernel_.k1.k1.constant_value) * np.asarray(gp.alpha_)
+            nearness[columns] = 0.5 / float(gp.kernel_.k1.k2.length_scale) ** 2
+            rms = float(scale * np.sqrt(np.mean((np.asarray(gp.alpha_) / np.diag(np.linalg.inv(gp.L_ @ gp.L_.T))) ** 2)))
+        self.weights, self.alpha, self.nearness = (np.column_stack(pair) for pair in ((self.weights, weights), (self.alpha, alpha), (self.nearness, nearness)))
+        self.rms.append(rms)
+
+    def __call__(self, z: Array) -> Array:
+        apart = (z[:, None, :] - self.points[None]) ** 2
+        return np.asarray(_basis(z) @ self.weights + np.einsum("spk,pk->sk", np.exp(-apart @ self.nearness), self.alpha))
 
 
 def pareto(log_weights: Array) -> tuple[Array, float]:
@@ -254,7 +258,7 @@ class Posterior:
 
 
 class Effort(NamedTuple):
-    """Foams that are simulated, of the first design, of draws of each chain but the last and of that one; chains; steps of one, and of these not counted."""
+    """Foams that are simulated, of the first design, of draws of each chain but the last and of that one; chains; steps of the last chain, and of these not counted."""
 
     first: int = 100
     second: int = 70
@@ -274,17 +278,17 @@ class Emulator:
         self.of, self.mid, self.scale = posterior, of.x[:, :-2].mean(axis=0), np.maximum(of.x[:, :-2].std(axis=0), 1e-6)
         z, p, rest = (of.x[:, :-2] - self.mid) / self.scale, posterior.problem, of.rest
         first, dead = len(p.model.unknown) + len(p.chain), of.failed[:len(p.measured)].any(axis=0)
-        self.points, self.dead = z, dead
-        self.columns, self.surfaces = [], []
+        self.dead, self.surfaces = dead, _Surfaces(z)
         for d, k in posterior.rows:
-            columns = [c for c in range(z.shape[1]) if c < first or p.speeds[c - first] == d]
+            columns = np.array([c < first or p.speeds[c - first] == d for c in range(z.shape[1])])
             y, good = of.response[d][:, k], ~dead & np.isfinite(of.response[d][:, k])
             if good.sum() < z.shape[1] + 5:
                 raise NumericError(f"the posterior of {p.model.label}: of {len(z)} foams near the best one {int((~good).sum())} make the drop {p.measured[d].name} fail", 5)
-            self.columns.append(columns)
-            self.surfaces.append(_surface(z[good][:, columns], y[good], True))
-        self.rest = _surface(z[~dead], rest[~dead], True) if np.any(rest > 0) else None
-        self.error = np.array([one.rms for one in self.surfaces])
+            self.surfaces.add(y, good, columns)
+        self.error = np.array(self.surfaces.rms)
+        self.has_rest = bool(np.any(rest > 0))
+        if self.has_rest:
+            self.surfaces.add(rest, ~dead, np.ones(z.shape[1], dtype=bool))
 
     def density(self, x: Array) -> Array:
         """Returns ln of the posterior density, by the emulator."""
@@ -296,33 +300,32 @@ class Emulator:
         return made
 
     def numbers(self, x: Array) -> Array:
-        z = (x[:, :-2] - self.mid) / self.scale
-        return np.stack([one(z[:, columns]) for one, columns in zip(self.surfaces, self.columns)], axis=1) if self.surfaces else np.empty((len(x), 0))
+        return self.surfaces((x[:, :-2] - self.mid) / self.scale)[:, :len(self.error)]
 
     def likelihood(self, x: Array) -> Array:
         z = (x[:, :-2] - self.mid) / self.scale
-        rest = np.maximum(self.rest(z), 0.0) if self.rest else np.zeros(len(x))
-        made = self.of.likelihood(self.numbers(x), rest, x[:, -2:], self.error)
+        told = self.surfaces(z)
+        made = self.of.likelihood(told[:, :len(self.error)], np.maximum(told[:, -1], 0.0) if self.has_rest else np.zeros(len(x)), x[:, -2:], self.error)
         if self.dead.any():  # where most neighbours fail the foam fails
-            apart = ((z[:, None, :] - self.points[None]) ** 2).sum(axis=2)
+            apart = ((z[:, None, :] - self.surfaces.points[None]) ** 2).sum(axis=2)
             near = np.argsort(apart, axis=1)[:, :NEAR]
             made = np.where(self.dead[near].mean(axis=1) > 0.5, -math.inf, made)
         return np.asarray(made)
 
 
-def _chain(emulator: Emulator, begin: Array, seed: int, effort: Effort) -> tuple[Array, float, float]:
+def _chain(emulator: Emulator, begin: Array, seed: int, steps: int, burn: int, ensembles: int) -> tuple[Array, float, float]:
     """Returns states of a chain of an ensemble sampler, the largest R-hat over ensembles and parameters, and the least effective size."""
     n, kept, sizes = begin.shape[1], [], []
     walkers = max(2 * n + 2, 32)
-    for k in range(ENSEMBLES):
+    for k in range(ensembles):
         random = np.random.default_rng(seed + k)
         sampler = emcee.EnsembleSampler(walkers, n, emulator.density, vectorize=True, moves=[(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)])
         sampler._random.seed(int(random.integers(2**31)))
         start = begin[random.choice(len(begin), walkers, replace=len(begin) < walkers)] + 1e-3 * random.standard_normal((walkers, n))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            sampler.run_mcmc(start, effort.steps, skip_initial_state_check=True)
-            chain = sampler.get_chain(discard=effort.burn)
+            sampler.run_mcmc(start, steps, skip_initial_state_check=True)
+            chain = sampler.get_chain(discard=burn)
             times = emcee.autocorr.integrated_time(chain, quiet=True)
         sizes.append(chain.shape[0] * walkers / np.maximum(times, 1.0))
         kept.append(chain)
@@ -349,8 +352,9 @@ def infer(found: Found, tell: Callable[[str], None], effort: Effort | None = Non
         known = _near(made, known)
         emulator = Emulator(made, known)
         best = known.x[np.argsort(-emulator.density(known.x))[:max(8, len(known.x) // 3)]]
-        states, made.rhat, made.effective = _chain(emulator, best, p.given.seed + 10 * turn, effort)
         last = turn == effort.rounds - 1
+        length = (effort.steps, effort.burn, ENSEMBLES) if last else (effort.steps // 2, effort.burn // 2, 1)  # others only choose what is learnt
+        states, made.rhat, made.effective = _chain(emulator, best, p.given.seed + 10 * turn, *length)
         draws = made.simulate(states[random.choice(len(states), effort.draws if last else effort.second, replace=False)], len(p.drops if last else p.measured))
         if not last:
             known = known.and_these(draws)

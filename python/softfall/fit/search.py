@@ -295,11 +295,30 @@ class Found:
         return None if base is None else base + self.slope[d] @ move
 
 
+class _Slopes:
+    """Derivatives of the residuals along a search: by differences at its start, and then every other time Broyden's update of the last ones."""
+
+    def __init__(self, problem: Problem, mesh: str) -> None:
+        self.problem, self.mesh = problem, mesh
+        self.last: tuple[Array, Array, Array] | None = None  # place, residuals and their derivatives by differences
+
+    def __call__(self, x: Array) -> Array:
+        if self.last is None:
+            made = self.problem.jacobian(x, self.mesh)[0]
+            self.last = x.copy(), self.problem.residual(x, self.mesh), made  # known from the step
+            return made
+        place, residual, slopes = self.last
+        self.last = None
+        move = (x - place) / self.problem.sd
+        wrong = self.problem.residual(x, self.mesh) - residual - slopes @ (x - place)
+        return np.asarray(slopes + np.outer(wrong, move / self.problem.sd) / float(move @ move))
+
+
 def _search(problem: Problem, x: Array, mesh: str, calls: int) -> tuple[Array, float, str]:
     """Returns the best place of one search by scipy's trust-region reflective algorithm, its objective, and how it ended."""
     start = np.clip(x, problem.low + 1e-9, problem.high - 1e-9)
     try:
-        made = least_squares(lambda p: problem.residual(p, mesh), start, lambda p: problem.jacobian(p, mesh)[0], (problem.low, problem.high), "trf",
+        made = least_squares(lambda p: problem.residual(p, mesh), start, _Slopes(problem, mesh), (problem.low, problem.high), "trf",
                              ftol=1e-3, xtol=1e-3, gtol=1e-4, x_scale=problem.sd, max_nfev=calls)
     except ValueError as error:
         if "not finite" in str(error):  # of the start

@@ -35,6 +35,7 @@ class Task(NamedTuple):
     bend: list[float]  # ln of the stress over that of the form, at BENDS; empty: as the form
 
 
+KEPT = ("a_max_scatter", "hic_scatter", "max_local_strain", "energy_error", "a_max_mesh_error")  # figures that are kept as they are
 BENDS = [round(0.05 + 0.1 * k, 2) for k in range(10)]  # strains
 
 
@@ -64,20 +65,20 @@ def _history(drop: c.c_void_p) -> tuple[Array, Array]:
     columns, values = [], c.POINTER(c.c_double)()
     for name in (b"time", b"acceleration"):
         count = memory._load().softfall_drop_history(drop, name, c.byref(values))
-        columns.append(np.array(values[:count]))
+        columns.append(np.ctypeslib.as_array(values, (count,)).copy())
     return columns[0], columns[1] / STANDARD_GRAVITY
 
 
 def _read(drop: c.c_void_p, task: Task, number: int, thickness: float) -> DropFigures:
     """Returns the figures of a drop with what the fit compares: names of KINDS, the samples of the curve, the indentation over the thickness."""
-    made = memory._figures(drop)
+    made = memory._figures(drop, (*KEPT, "a_max_g", "hic", "hic_t1_ms", "hic_t2_ms", "v_rebound_m_s", "contact_time_ms", "max_indentation_mm"))
     figures = made.figures
     seconds, raw = _history(drop)
     told = {"a_max_g": figures["a_max_g"], "HIC": figures["hic"], "HIC_window_ms": figures["hic_t2_ms"] - figures["hic_t1_ms"],
             "v_rebound_m_s": figures["v_rebound_m_s"], "contact_time_ms": math.nan}
     if math.isfinite(figures["v_rebound_m_s"]):
         told["contact_time_ms"] = 1e3 * float(seconds[min(int(np.flatnonzero(raw)[-1]) + 1, len(raw) - 1)]) - figures["contact_time_ms"]
-    kept = {key: figures[key] for key in ("a_max_scatter", "hic_scatter", "max_local_strain", "energy_error", "a_max_mesh_error")}
+    kept = {key: figures[key] for key in KEPT}
     told |= {f"raw_{key}": told[key] for key in ("a_max_g", "HIC", "HIC_window_ms")}
     if any(task.chain[k] > 0 for k in (0, 2)) or (task.samples and number == task.sampled):
         read = library.reading(seconds, raw, task.chain, 1000.0)[0]

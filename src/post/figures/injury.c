@@ -205,8 +205,12 @@ sf_status sf_injury_evaluate_peak(const sf_series *curve, sf_injury *injury, sf_
 sf_status sf_injury_evaluate(const sf_series *curve, sf_injury *injury, sf_error *err) {
     const double clip_duration = 3e-3;
     SF_TRY(sf_injury_evaluate_peak(curve, injury, err));
-    SF_TRY(sf_hic_evaluate(curve, 15e-3, &injury->hic15, err));
-    SF_TRY(sf_hic_evaluate(curve, 36e-3, &injury->hic36, err));
+    injury->hic15 = injury->hic36 = injury->hic;
+    double window = injury->hic.t2 - injury->hic.t1; /* the best of all is the best of those up to a limit */
+    if (!(window <= 15e-3))
+        SF_TRY(sf_hic_evaluate(curve, 15e-3, &injury->hic15, err));
+    if (!(window <= 36e-3))
+        SF_TRY(sf_hic_evaluate(curve, 36e-3, &injury->hic36, err));
     injury->gadd = gadd_index(curve);
     injury->clip_contiguous_g = clip_level(curve, clip_duration, 1);
     injury->clip_cumulative_g = clip_level(curve, clip_duration, 0);

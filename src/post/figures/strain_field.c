@@ -453,14 +453,40 @@ static void measure_edge(const sf_results *r, const faces *f, const sf_frame_hea
     }
 }
 
+/* Lists the triangles of a surface that reach as near to y = 0 as those that go through it, with which they
+ * may share a node: a section is measured by no other. */
+static int64_t list_at_section(int64_t triangles, const int32_t *triangle, const double *position,
+                               int32_t *out) {
+    double width = 0;
+    int64_t count = 0;
+    for (int turn = 0; turn < 2; turn++)
+        for (int64_t k = 0; k < triangles; k++) {
+            const double *x[3];
+            sf_corners(position, &triangle[3 * k], x);
+            double low = fmin(x[0][1], fmin(x[1][1], x[2][1])), high = fmax(x[0][1], fmax(x[1][1], x[2][1]));
+            if (turn == 0 && low < 0 && high > 0)
+                width = fmax(width, fmax(-low, high));
+            else if (turn == 1 && low <= width && high >= -width)
+                memcpy(&out[3 * count++], &triangle[3 * k], 3 * sizeof *out);
+        }
+    return count;
+}
+
 /* Measures a body: its sharp edges and vertices as they are, and all edges of its triangles beyond the depth
  * that a smooth surface has in chords of the pad (model/ridges.h). */
 static sf_status measure_body(const sf_results *r, const faces *f, const sf_frame_head *head, int64_t nodes,
                               int64_t triangles, const int32_t *triangle, const double *position,
                               sf_rim_cut *cut, sf_error *err) {
     SF_OWNED_BY(sf_ridges_free) sf_ridges sharp = {0};
+    SF_OWNED int32_t *section = NULL;
     if (f->count == 0 || triangles == 0)
         return SF_OK;
+    if (r->axisymmetric) {
+        section = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *section, "edges of a surface");
+        SF_TRY(err->status);
+        triangles = list_at_section(triangles, triangle, position, section);
+        triangle = section;
+    }
     sf_ridge_limits limits = {.spacing = cut->spacing,
                               .depth = r->axisymmetric ? SF_SECTION_DEPTH : SF_SMOOTH_DEPTH};
     memcpy(limits.place, r->symmetry_place, sizeof limits.place);
