@@ -2,18 +2,16 @@
 """The report of a critical fall height: the answer first, a_max and HIC over the height, what the answer includes, the drops."""
 from __future__ import annotations
 
-import base64
-import io
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Sequence
 
-import jinja2
 import numpy as np
 
-from . import cfh, cfh_draws, library, output as output_files, programs
+from . import cfh, cfh_draws, library, output as output_files
 from .cfh import CRITERIA, ENDINGS, UNITS
 from .sweep_page import BAD, GOOD, PLAIN
+from .template import base64_of, png, render
 
 if TYPE_CHECKING:
     from .cfh_command import Study
@@ -129,16 +127,12 @@ def _picture(s: Study, criteria: Sequence[int]) -> bytes:
         ax.set_ylim(bottom=0)
         ax.margins(x=0.03)
         ax.legend(fontsize=7, loc="upper left", framealpha=0.9)
-    image = io.BytesIO()
-    figure.savefig(image, format="png", metadata={"Software": None})
-    return image.getvalue()
+    return png(figure)
 
 
 def write(s: Study, folder: Path) -> None:
     """Writes cfh.png and report.html into the folder."""
-    share = programs.folder().parent / "share/softfall"
     output_files.write(folder / "cfh.png", _picture(s, (0, 1)))
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(share), autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
 
     def text(value: float, digits: int) -> str:
         return f"{value:.{digits}f}" if math.isfinite(value) else "–"
@@ -152,7 +146,7 @@ def write(s: Study, folder: Path) -> None:
     intervals = [[names[name], *("–" if end <= 0 or math.isinf(end) else f"{end:.3f}" for end in (s.spread.parts[name].at_least, *s.spread.parts[name][:3]))] for name in cfh_draws.PARTS] if s.spread else []
     said = answer(s)
     kind = "plain" if s.result.verdict != "found" else "good" if s.spread else "fair"
-    output_files.write(folder / "report.html", environment.get_template("cfh.html").render(
-        title=f"Critical fall height: {Path(s.options.case).resolve().parent.name}", css=(share / "report.css").read_text(encoding="utf-8"), said=said, kind=kind, rows=rows,
-        limits=limits, intervals=intervals, percent=100 * (1 - s.options.quantile), pictures=[(name, base64.b64encode(_picture(s, (c,))).decode()) for c, name in enumerate(CRITERIA)], rig=bool(s.rig.pairs), ending=ENDINGS[s.ending],
+    output_files.write(folder / "report.html", render(
+        "cfh.html", title=f"Critical fall height: {Path(s.options.case).resolve().parent.name}", said=said, kind=kind, rows=rows,
+        limits=limits, intervals=intervals, percent=100 * (1 - s.options.quantile), pictures=[(name, base64_of(_picture(s, (c,)))) for c, name in enumerate(CRITERIA)], rig=bool(s.rig.pairs), ending=ENDINGS[s.ending],
         program=f"softfall cfh {library.version()}", case=s.options.case, simulated=s.simulated, found=s.found))

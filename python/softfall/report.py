@@ -5,7 +5,6 @@ Every number is one of summary.json, of the CSV files or of results.h5. What is 
 """
 from __future__ import annotations
 
-import base64
 import json
 import math
 import re
@@ -13,15 +12,15 @@ from pathlib import Path
 from typing import Any, Mapping
 
 import h5py
-import jinja2
 import numpy as np
 import pandas
 
-from . import library, output as output_files, programs, report_pictures as pictures
+from . import library, output as output_files, report_pictures as pictures
 from .array import Array
 from .drop import Drop, as_str
 from .errors import Error, InputError
 from .library import GRADES
+from .template import render
 
 KINDS = dict(zip(GRADES, ("good", "fair", "bad")))
 CAUTION = "Indicative, not a certification: figures of simulated impacts, not the test of EN 1177 or ASTM F1292."
@@ -360,11 +359,7 @@ class Page:
 
 
 def _render(name: str, **values: Any) -> str:
-    share = programs.folder().parent / "share/softfall"
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(share), autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    environment.filters["base64"] = lambda data: base64.b64encode(data).decode()
-    return environment.get_template(name).render(css=(share / "report.css").read_text(encoding="utf-8"), caution=CAUTION, text=_text, kinds=KINDS,
-                                                 program=f"softfall report {library.version()}", **values)
+    return render(name, caution=CAUTION, text=_text, kinds=KINDS, program=f"softfall report {library.version()}", **values)
 
 
 def _put(path: Path, content: str) -> Path:

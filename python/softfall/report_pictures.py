@@ -2,13 +2,13 @@
 """Pictures of a drop's report: curves over time, force, energies, and the pad cut through the missile's axis. Each is a PNG."""
 from __future__ import annotations
 
-import io
 from typing import Any, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
 from .array import Array
 from .drop import Drop, Frame
+from .template import png
 
 SEEN = 0.01  # of the largest value: a curve this far from another is seen beside it
 MODEL, MEASURED, PALE, LIMIT, SHADE = "#08519c", "#202020", "#a0a0a0", "#cb181d", "#c6dbef"
@@ -30,12 +30,6 @@ def _figure(width: float, height: float) -> tuple[Any, Any]:
     from matplotlib.figure import Figure
     figure = Figure(figsize=(width, height), dpi=170, layout="constrained")
     return figure, figure.subplots()
-
-
-def _png(figure: Any) -> bytes:
-    image = io.BytesIO()
-    figure.savefig(image, format="png", metadata={"Software": None})
-    return image.getvalue()
 
 
 def _tidy(ax: Any) -> None:
@@ -96,7 +90,7 @@ def acceleration(summary: Mapping[str, Any], curve: Table, history: Table | None
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]) if value.min(initial=0) < -0.02 * value.max(initial=0) else 0)
     _tidy(ax)
     _key(figure, ax, 2)
-    return _png(figure)
+    return png(figure)
 
 
 def line(x: Array, y: Array, labels: tuple[str, str]) -> bytes:
@@ -105,7 +99,7 @@ def line(x: Array, y: Array, labels: tuple[str, str]) -> bytes:
     ax.plot(x, y, color=MODEL, lw=1.6)
     ax.set(xlabel=labels[0], ylabel=labels[1], xlim=(0, None), ylim=(0, None))
     _tidy(ax)
-    return _png(figure)
+    return png(figure)
 
 
 def energies(history: Table, shown: tuple[float, float]) -> bytes:
@@ -118,7 +112,7 @@ def energies(history: Table, shown: tuple[float, float]) -> bytes:
     ax.set(xlim=shown, ylim=(0, None), xlabel="time (ms)", ylabel="energy (J)")
     _tidy(ax)
     _key(figure, ax, 4)
-    return _png(figure)
+    return png(figure)
 
 
 def several(curves: Mapping[str, tuple[Array, Array]]) -> bytes:
@@ -129,7 +123,7 @@ def several(curves: Mapping[str, tuple[Array, Array]]) -> bytes:
     ax.set(xlabel="time from first contact (ms)", ylabel="acceleration (g)")
     _tidy(ax)
     _key(figure, ax, 2)
-    return _png(figure)
+    return png(figure)
 
 
 # ---- the pad ----
@@ -258,7 +252,7 @@ class Section:
         bar.set_label(label, fontsize=8)
         bar.ax.tick_params(labelsize=8)
         bar.ax.minorticks_off()
-        return _png(figure)
+        return png(figure)
 
     def profile(self, instants: Sequence[Instant], field: str, label: str, factor: float) -> bytes | None:
         """Returns a field over the undeformed depth under the missile's axis; None where the cut has no such line."""
@@ -278,7 +272,7 @@ class Section:
         ax.set(xlabel=label, ylabel="undeformed depth (mm)", ylim=(1e3 * self.thickness, 0), xscale="log")
         _tidy(ax)
         _key(figure, ax, 3)
-        return _png(figure)
+        return png(figure)
 
 
 def instants(drop: Drop, times: Sequence[float | None], load: tuple[Array, Array], unit: str) -> tuple[list[Instant], list[str]]:

@@ -2,21 +2,19 @@
 """The report of a sweep: the answer first, pictures, and the table of runs with pass and fail."""
 from __future__ import annotations
 
-import base64
-import io
 import math
 from pathlib import Path
 from typing import Any, Callable
 
-import jinja2
 import matplotlib
 import numpy as np
 
-from . import effects, output as output_files, programs
+from . import effects, output as output_files
 from .campaign import ANVIL, REFINED, Table
 from .effects import Statements
 from .library import GRADES
 from .plan import Limit, Plan
+from .template import base64_of, png, render
 
 matplotlib.use("agg")
 matplotlib.rcParams.update({"font.size": 8, "axes.titlesize": 9})
@@ -230,17 +228,15 @@ def write(table: Table, said: list[Statements], folder: Path, facts: dict[str, A
         if drawn is None:
             path.unlink(missing_ok=True)
             continue
-        image = io.BytesIO()
-        drawn.savefig(image, format="png", metadata={"Software": None})
-        output_files.write(path, image.getvalue())
-        pictures.append({"name": name, "caption": caption, "data": base64.b64encode(image.getvalue()).decode()})
+        image = png(drawn)
+        output_files.write(path, image)
+        pictures.append({"name": name, "caption": caption, "data": base64_of(image)})
     output_files.write(folder / "report.html", page(table, said, pictures, facts))
 
 
 def page(table: Table, said: list[Statements], pictures: list[dict[str, str]], facts: dict[str, Any]) -> str:
     """Returns report.html."""
-    plan, share = table.plan, programs.folder().parent / "share/softfall"
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(share), autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    plan = table.plan
     shown = list(range(min(plan.rows, LISTED)))
     runs = [{"id": k + 1, "factors": [_short(plan.factors[f].text(plan.value(f, k))) for f in range(len(plan.factors))], "verdict": verdict(table, k),
              "figures": [f"{row.judged.figures[limit.figure]:.4g}" if row.judged and math.isfinite(row.judged.figures[limit.figure]) else "–" for limit in plan.figures],
@@ -252,8 +248,8 @@ def page(table: Table, said: list[Statements], pictures: list[dict[str, str]], f
                 "cells": [found[c] for _, found in limited]} for c in range(min(len(limited[0][1]), CELLS_SHOWN) if limited else 0)]
     refined = [{"id": k + 1, "cells": [f"{value:.4g} ± {error:.2g}" if math.isfinite(value) else "–" for value, error in table.refined(k)[0]], "note": table.refined(k)[1]}
                for k in shown] if table.coarse else []
-    return environment.get_template("sweep.html").render(
-        plan=plan, answer=answer(table), limits=limits_text(plan), css=(share / "report.css").read_text(encoding="utf-8"), passed=states.count("pass"),
+    return render(
+        "sweep.html", plan=plan, answer=answer(table), limits=limits_text(plan), passed=states.count("pass"),
         failed=states.count("fail"), unknown=states.count("?"), facts=facts, pictures=pictures, runs=runs, name_of=name_of, chosen=[plan.factors[k].heading for k in chosen],
         chances=chances, limited=[limits_text_of(limit) for limit, _ in limited], refined=refined, refined_names=[name_of(key) for key in REFINED],
         factors=[(f.name, f.key, plan.describe(k), "uncertain" if f.uncertain else "chosen") for k, f in enumerate(plan.factors)],

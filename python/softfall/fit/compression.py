@@ -13,7 +13,7 @@ from ..array import Array
 from ..errors import Error, InputError
 from ..library import CompressionTest, Form
 from ..settings import Setting
-from .input import SPECIMEN, TERMS, read_quantity, refuse_solid
+from .input import SPECIMEN, TERMS, check_solid, read_quantity, refuse_solid, start_value
 
 FORM_KEYS = ("law", "name", "density", "tests", "DAMP", "E_range", "specimen", "toe_correction", "cycles", "curve_form", "solid_density", "start", "unknown", "rate_model",
              "rate_reference", "predict")
@@ -308,7 +308,8 @@ def _form(root: Setting, given: Given) -> None:
     start = form.start(value | ({"rate_filter_time": FACTOR_FILTER_TIME, "rate_factor": math.nan} if factor else {}), unknown)
     given.form, given.unknown, given.rate = form, unknown, rate
     _start(root, form, rate, own, start)
-    _check_solid(root, form, unknown, solid)
+    group = root.get("start")
+    check_solid(root, root, form, [item.name for item in group.items] if group else (), unknown, solid)
     pole = form.pole(start)
     for test in (*given.tests, *given.predicted):
         if not test.data.largest_strain < pole:
@@ -346,22 +347,7 @@ def _start(root: Setting, form: Form, rate: str, own: set[str], start: Array) ->
             item.refuse(f'start: "{item.name[:80]}" is neither E, a parameter of curve_form = "{form.curve}", nor rate_factor, ED or BETA1')
         _refuse_term(item, p.rate, rate)
         assert group
-        value = read_quantity(group, item.name, p.quantity) if p.quantity else group.number(item.name, p.low, p.high)
-        if not p.low <= value <= p.high:
-            item.refuse(f"{item.name} is {value:g}, outside of {p.low:g} to {p.high:g}")
-        start[form.index[item.name]] = value
-
-
-def _check_solid(root: Setting, form: Form, unknown: list[str], solid: float) -> None:
-    """Checks that the solid fraction is known in one way, where the form has one."""
-    density, group = root.get("solid_density"), root.get("start")
-    fraction = group.get("solid_fraction") if group else None
-    if density and not form.parameters[form.index["solid_fraction"]].used:
-        density.refuse(f'solid_density is given, but curve_form = "{form.curve}" has no solid fraction; leave it out, or take gas_solid')
-    if density and fraction:
-        fraction.refuse(f"the solid fraction is given twice: by solid_density, which makes it {form.density / solid:.3g}, and as solid_fraction in start")
-    if form.curve == "gas_solid" and not (density or fraction or "solid_fraction" in unknown):
-        root.member("curve_form").refuse('curve_form = "gas_solid" needs solid_density, the density of the solid in the cell walls, or solid_fraction among the unknown parameters')
+        start[form.index[item.name]] = start_value(group, p)
 
 
 # ---- a hyperfoam

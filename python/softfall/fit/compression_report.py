@@ -2,19 +2,17 @@
 """What `softfall fit compression` writes of a form or a hyperfoam, and the page of every compression fit: curves, deviations, parameters with their errors."""
 from __future__ import annotations
 
-import base64
-import io
 import json
 import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import jinja2
 import numpy as np
 
-from .. import library, output as output_files, programs
+from .. import library, output as output_files
 from ..array import Array
 from ..sweep_page import PLAIN
+from ..template import base64_of, png, render
 from .compression import Test
 from .curve_fit import GOOD, MEMORY, POOR, UNLOADING, FormFit, number, returned
 from .hyperfoam_fit import HyperfoamFit
@@ -279,15 +277,12 @@ def _picture(page: Page) -> bytes:
         ax.legend(fontsize=7)
     if len(page.energies) == 1:
         axes[1][1].set_axis_off()
-    image = io.BytesIO()
-    figure.savefig(image, format="png", metadata={"Software": None})
-    return image.getvalue()
+    return png(figure)
 
 
 def write_page(page: Page, folder: Path, program: str) -> None:
     """Writes fit.png and report.html."""
-    share, image = programs.folder().parent / "share/softfall", _picture(page)
+    image = _picture(page)
     output_files.write(folder / "fit.png", image)
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(share), autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    output_files.write(folder / "report.html", environment.get_template("fit-compression.html").render(
-        page=page, state=STATES[page.kind], worst=_percent(page.worst), css=(share / "report.css").read_text(encoding="utf-8"), picture=base64.b64encode(image).decode(), program=program))
+    output_files.write(folder / "report.html", render(
+        "fit-compression.html", page=page, state=STATES[page.kind], worst=_percent(page.worst), picture=base64_of(image), program=program))

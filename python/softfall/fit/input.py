@@ -7,7 +7,7 @@ import math
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Container, NamedTuple
 
 import numpy as np
 
@@ -395,11 +395,15 @@ def _starts(groups: list[Setting], form: library.Form, forms: list[library.Form]
                 item.refuse(f'unknown parameter "{item.name[:80]}" of the foam')
             if not parameter.used and not (holder is groups[0] and any(one.parameters[one.index[item.name]].used for one in forms)):
                 item.refuse(f'start: {item.name} is not a parameter of the form "{form.curve}"')
-            value = read_quantity(group, item.name, parameter.quantity) if parameter.quantity else group.number(item.name, parameter.low, parameter.high)
-            if not parameter.low <= value <= parameter.high:
-                item.refuse(f"{item.name} is {value:g}, outside of {parameter.low:g} to {parameter.high:g}")
-            given[item.name] = value
+            given[item.name] = start_value(group, parameter)
     return given
+
+
+def start_value(group: Setting, parameter: library.Parameter) -> float:
+    """Returns the value (SI) of a parameter in a group `start`."""
+    name, low, high = parameter.name, parameter.low, parameter.high
+    value = read_quantity(group, name, parameter.quantity) if parameter.quantity else group.number(name, low, high)
+    return value if low <= value <= high else group.member(name).refuse(f"{name} is {value:g}, outside of {low:g} to {high:g}")
 
 
 def _listed(holder: Setting) -> dict[str, Setting]:
@@ -421,7 +425,7 @@ def refuse_solid(root: Setting, solid: float, density: float = 0.0) -> None:
         root.member("solid_density").refuse(f"solid_density is {solid:g} kg/m3, the foam's density {density:g} kg/m3: a foam is less than half solid")
 
 
-def _check_solid(root: Setting, own: Setting, form: library.Form, given: dict[str, float], listed: dict[str, Setting], solid: float) -> None:
+def check_solid(root: Setting, own: Setting, form: library.Form, given: Container[str], listed: Container[str], solid: float) -> None:
     """Checks that the solid fraction is known in one way, where the form has one."""
     density, key = root.get("solid_density"), "curve" if own is not root else "curve_form"
     if density and own is root and not form.parameters[form.index["solid_fraction"]].used:
@@ -440,7 +444,7 @@ def _model(root: Setting, own: Setting, form: library.Form, forms: list[library.
     for name in special:
         if name in common:
             special[name].refuse(f"unknown: {name} is given twice")
-    _check_solid(root, own, form, given, listed, solid)
+    check_solid(root, own, form, given, listed, solid)
     for name, entry in listed.items():
         if name not in form.index:
             entry.refuse(f'unknown parameter "{name[:80]}" of the foam')

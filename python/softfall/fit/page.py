@@ -2,18 +2,16 @@
 """The report of a fit: how the foam meets what was measured, its parameters and its curve, predictions with their intervals."""
 from __future__ import annotations
 
-import base64
-import io
 import math
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import numpy as np
 
-from .. import library, output as output_files, programs
+from .. import library, output as output_files
 from ..library import GRADES
 from ..sweep_page import PLAIN
+from ..template import base64_of, png, render
 from .drops import GRID
 from .files import Study, chain_lines, tests_of
 from .input import KINDS
@@ -77,9 +75,7 @@ def _picture(s: Study) -> bytes:
         ax.set_xlim(left=0)
         ax.legend(fontsize=7)
         ax.set_title("lines: simulated; circles: measured peaks", fontsize=8)
-    image = io.BytesIO()
-    figure.savefig(image, format="png", metadata={"Software": None})
-    return image.getvalue()
+    return png(figure)
 
 
 def _drops(s: Study) -> tuple[list[list[str]], list[list[str]]]:
@@ -138,11 +134,10 @@ def context(s: Study) -> dict[str, Any]:
 
 def write(s: Study, folder: Path) -> None:
     """Writes fit.png and report.html into the folder."""
-    share, image = programs.folder().parent / "share/softfall", _picture(s)
+    image = _picture(s)
     output_files.write(folder / "fit.png", image)
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(share), autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    output_files.write(folder / "report.html", environment.get_template("fit.html").render(
-        title=f"Identification from drops: {s.given.name}", css=(share / "report.css").read_text(encoding="utf-8"), picture=base64.b64encode(image).decode(),
+    output_files.write(folder / "report.html", render(
+        "fit.html", title=f"Identification from drops: {s.given.name}", picture=base64_of(image),
         program=f"softfall fit {library.version()}", input=str(s.given.path), simulated=s.simulated, kept=s.kept, seconds=s.seconds, **context(s)))
 
 
