@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import collections
 import concurrent.futures
-import csv
-import io
 import math
 import re
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Callable, Iterable
+from typing import Any, Callable, Iterable
 
 import numpy as np
 
@@ -112,9 +110,7 @@ class Table:
         heading = ["id", *(factor.heading for factor in self.plan.factors), "run_status", "grade", "message", "folder", *keys[:place], "status", *keys[place:]]
         if self.coarse:
             heading += [name for key in REFINED for name in (f"{key}_refined", f"{key}_refined_error")] + ["refined_note"]
-        out = io.StringIO()
-        table = csv.writer(out, lineterminator="\n")
-        table.writerow(map(csv_text, heading))
+        rows: list[list[Any]] = [[csv_text(word) for word in heading]]
         for k, row in enumerate(self.rows):
             cells = [str(k + 1), *(csv_text(factor.text(self.plan.value(f, k))) for f, factor in enumerate(self.plan.factors)), row.state,
                      GRADES[row.judged.grade] if row.judged else "", csv_text(row.message), ""]
@@ -123,21 +119,19 @@ class Table:
             if self.coarse:
                 pairs, note = self.refined(k)
                 cells += [_cell(value) for pair in pairs for value in pair] + [csv_text(note)]
-            table.writerow(cells)
-        output_files.write(path, out.getvalue())
+            rows.append(cells)
+        output_files.write(path, output_files.table(rows))
 
     def write_drops(self, path: Path) -> None:
         """Writes drops.csv: each drop of the rows that are done."""
         keys = list(memory.figure_keys())
         place = keys.index("touched")
-        out = io.StringIO()
-        table = csv.writer(out, lineterminator="\n")
-        table.writerow(["id", "drop", "counted", "grade", *keys[:place], "status", *keys[place:]])
+        rows: list[list[Any]] = [["id", "drop", "counted", "grade", *keys[:place], "status", *keys[place:]]]
         for k, row in enumerate(self.rows):
             for number, (drop, counts) in enumerate(zip(row.drops, row.counted), 1):
                 figures = [_cell(drop.figures[key]) for key in keys]
-                table.writerow([k + 1, number, "yes" if counts else "no", GRADES[drop.grade], *figures[:place], csv_text(drop.status), *figures[place:]])
-        output_files.write(path, out.getvalue())
+                rows.append([k + 1, number, "yes" if counts else "no", GRADES[drop.grade], *figures[:place], csv_text(drop.status), *figures[place:]])
+        output_files.write(path, output_files.table(rows))
 
 
 def _cell(value: float) -> str:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import json
 import math
 import shlex
@@ -198,9 +196,7 @@ def find(o: argparse.Namespace, tell: Callable[[str], None], progress: Callable[
     _check(o)
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is not a folder")
-    there = [name for name in OUTPUT if (folder / name).exists()]
-    if there and not o.force:
-        raise InputError(f"{folder} already holds {there[0]}: give another directory, or --force to replace it")
+    output_files.refuse_existing(folder, OUTPUT, o.force)
     for name in (*OUTPUT, *STALE):
         output_files.check(folder / name, *filter(None, (o.case, o.rig, o.material)))
     output_files.check_page(folder / "report.html")
@@ -300,12 +296,8 @@ def _summary(s: Study, command: str) -> dict[str, Any]:
 
 
 def _table(path: Path, heading: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
-    out = io.StringIO()
-    table = csv.writer(out, lineterminator="\n")
-    table.writerow(heading)
-    for row in rows:
-        table.writerow([("" if not math.isfinite(cell) else f"{cell:.9g}") if isinstance(cell, float) else cell for cell in row])
-    output_files.write(path, out.getvalue())
+    cells = ([("" if not math.isfinite(cell) else f"{cell:.9g}") if isinstance(cell, float) else cell for cell in row] for row in rows)
+    output_files.write(path, output_files.table([heading, *cells]))
 
 
 def _write_tables(s: Study, folder: Path) -> None:

@@ -46,9 +46,7 @@ def _begin(o: argparse.Namespace) -> tuple[Input, Path]:
     if o.jobs is not None and not 1 <= o.jobs <= MOST_JOBS:
         raise InputError(f"--jobs {o.jobs} is outside of 1 to {MOST_JOBS}")
     given, folder = fit_input.read(names[0]), Path(o.output)
-    there = [name for name in (*FILES, f"{given.name}.cfg") if (folder / name).exists()]
-    if there and not o.force:
-        raise InputError(f"{folder} already holds {there[0]}: give another directory, or --force to replace it")
+    output_files.refuse_existing(folder, (*FILES, f"{given.name}.cfg"), o.force)
     curves = (f"{given.name}{end}" for end in (".cfg", ".csv", *(f"-{k}.csv" for k in range(1, 9))))
     draws = (f"posterior/{path.name}" for path in (folder / "posterior").glob("draw-*"))
     output_files.check_all(folder, (*FILES, *STALE, "drops.sqlite", *curves, *draws), settings.files(names[0]))

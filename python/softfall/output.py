@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import fcntl
+import io
 import os
 import re
 import secrets
@@ -88,6 +90,24 @@ def check_all(folder: Path, names: Iterable[str], inputs: Sequence[str | os.Path
     for name in names:
         check(folder / name, *inputs)
     check_page(folder / "report.html")
+
+
+def refuse_existing(folder: Path, names: Iterable[str], force: bool) -> None:
+    """Refuses a folder with files of these names; with `force` they are to be replaced."""
+    there = next((name for name in names if (folder / name).exists()), None)
+    if there and not force:
+        raise InputError(f"{folder} already holds {there}: give another directory, or --force to replace it")
+
+
+def table(rows: Iterable[Iterable[Any]]) -> str:
+    """Returns rows as the text of a CSV file.
+
+    >>> table([["a", "b"], [1, "x,y"]])
+    'a,b\\n1,"x,y"\\n'
+    """
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows(rows)
+    return stream.getvalue()
 
 
 def write(path: str | os.PathLike[str], content: str | bytes, *inputs: str | os.PathLike[str]) -> None:

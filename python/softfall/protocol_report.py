@@ -2,9 +2,7 @@
 """The page of a protocol: report.html, protocol.json and drops.csv."""
 from __future__ import annotations
 
-import csv
 import html
-import io
 import json
 import math
 import os
@@ -164,15 +162,13 @@ def write(p: Protocol, parts: Mapping[str, Drops], outcomes: Mapping[str, Outcom
         f'<p class="note">softfall-protocol, softfall {html.escape(library.version())}. Curves are filtered with CFC {p.filter:g}.</p></html>'])
     output_files.write(output / "protocol.json", json.dumps({**_summary(p, parts, outcomes, pairs, laboratory, advice), "set_up": dict(told or {})}, indent=2, allow_nan=False) + "\n")
     output_files.write(output / "report.html", page)
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    table.writerow(["kind", "condition", "position", "missile", "height_m", "speed_m_s", "mass", "drop", "counts", *(figure.label for figure in p.figures), "grade", "note", "source"])
+    rows: list[list[Any]] = [["kind", "condition", "position", "missile", "height_m", "speed_m_s", "mass", "drop", "counts", *(figure.label for figure in p.figures), "grade", "note", "source"]]
     for what, drops in parts.items():
         counts = {spot: counted_of(p, group) for spot, group in spots_of(drops).items()}
         for drop in drops.all:
-            table.writerow([what, *(_cell(part) for part in (drop.spot.condition, drop.spot.position, drop.spot.missile)), f"{drop.spot.height:g}", "" if math.isnan(drop.speed) else f"{drop.speed:g}", drop.spot.mass,
+            rows.append([what, *(_cell(part) for part in (drop.spot.condition, drop.spot.position, drop.spot.missile)), f"{drop.spot.height:g}", "" if math.isnan(drop.speed) else f"{drop.speed:g}", drop.spot.mass,
                            drop.number, "yes" if drop.number in counts.get(drop.spot, p.counted) else "no", *(drop.figures.get(figure.label, "") for figure in p.figures), drop.grade, _cell(drop.note), _cell(drop.source)])
-    output_files.write(output / "drops.csv", text.getvalue())
+    output_files.write(output / "drops.csv", output_files.table(rows))
 
 
 def _cell(text: str) -> str:

@@ -125,9 +125,7 @@ def _check_folder(folder: Path, plan: Plan, options: argparse.Namespace) -> None
             raise InputError(f"{folder} holds the runs of another plan: give another directory, or --force to replace its table (finished drops of the same inputs are "
                              "used again)")
         return
-    there = [name for name in ("runs.csv", *OUTPUT) if (folder / name).exists()]
-    if there and not options.force:
-        raise InputError(f"{folder} already holds {there[0]}: give another directory, or --force to replace it")
+    output_files.refuse_existing(folder, ("runs.csv", *OUTPUT), options.force)
 
 
 def _print_table(plan: Plan, tell: Callable[[str], None]) -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import json
 import warnings
 from pathlib import Path
@@ -12,7 +10,7 @@ from typing import Callable
 
 from .. import library, output as output_files, settings
 from ..command import Parser, say
-from ..errors import InputError, SoftfallWarning
+from ..errors import SoftfallWarning
 from . import compression, compression_report as report, curve_fit, hyperfoam_fit
 
 FILES = ("fit.csv", "fit.json", "fit.png", "report.html", "material.cfg")
@@ -33,9 +31,7 @@ def parser(prog: str) -> Parser:
 def _write(folder: Path, fit: curve_fit.FormFit | hyperfoam_fit.HyperfoamFit, page: report.Page) -> None:
     given = fit.given
     summary, rows = (report.form_summary(fit), report.form_table(fit)) if isinstance(fit, curve_fit.FormFit) else (report.hyperfoam_summary(fit), report.hyperfoam_table(fit))
-    stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(rows)
-    output_files.write(folder / "fit.csv", stream.getvalue())
+    output_files.write(folder / "fit.csv", output_files.table(rows))
     output_files.write(folder / "fit.json", json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
     assert fit.foam
     fit.foam.write(str(folder), "material", given.name, "\n".join([f"Identified by softfall fit compression {library.version().split()[0]} from {given.path}. ±: one standard error.", *page.lines(), ""]))
@@ -58,9 +54,7 @@ def _fit(path: str, folder: Path, tell: Callable[[str], None]) -> report.Page:
 def run(options: argparse.Namespace, tell: Callable[[str], None] = say) -> int:
     """Runs the command and returns its exit code."""
     o, folder = options, Path(options.output)
-    there = [name for name in FILES if (folder / name).exists()]
-    if there and not o.force:
-        raise InputError(f"{folder} already holds {there[0]}: give another directory, or --force to replace it")
+    output_files.refuse_existing(folder, FILES, o.force)
     output_files.check_all(folder, (*FILES, *STALE), settings.files(o.input))
     with output_files.scratch() as scratch:  # a failure leaves the earlier files as they are
         page = _fit(o.input, scratch, tell)

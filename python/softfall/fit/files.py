@@ -2,8 +2,6 @@
 """The files of a fit: the material, fit.json, the curve and the drops as tables."""
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 from dataclasses import dataclass, field
@@ -198,15 +196,9 @@ def summary(s: Study) -> dict[str, Any]:
     return made | ({"inference": s.average.summary()} if s.average else {})
 
 
-def _table(rows: list[list[Any]]) -> str:
-    stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(rows)
-    return stream.getvalue()
-
-
 def curve_table(s: Study) -> str:
     """Returns fit-curve.csv."""
-    return _table([["strain", "stress_kPa", "low95_kPa", "high95_kPa", "width_left_of_prior"], *([f"{e:.3f}", *(f"{v:.6g}" for v in rest)] for e, *rest in s.curve)])
+    return output_files.table([["strain", "stress_kPa", "low95_kPa", "high95_kPa", "width_left_of_prior"], *([f"{e:.3f}", *(f"{v:.6g}" for v in rest)] for e, *rest in s.curve)])
 
 
 def drops_table(s: Study) -> str:
@@ -214,7 +206,7 @@ def drops_table(s: Study) -> str:
     fit = s.fit
     curves = [one.shown() if not one.failure else np.full(len(GRID), math.nan) for one in fit.own]
     rows = [[f"{1e3 * t:.6g}", *("" if math.isnan(v) else f"{v:.6g}" for v in values)] for t, *values in zip(GRID, *curves)]
-    return _table([["time_ms", *(f"{drop.name}_g" for drop in s.given.drops)], *rows])
+    return output_files.table([["time_ms", *(f"{drop.name}_g" for drop in s.given.drops)], *rows])
 
 
 def write_material(s: Study, folder: Path) -> None:
@@ -232,8 +224,6 @@ def write(s: Study, folder: Path) -> None:
     output_files.write(folder / "fit.json", json.dumps(summary(s), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
 
-
-
 def write_posterior(s: Study, folder: Path) -> None:
     """Writes posterior.csv and the draws; those of an earlier fit go before, also where this one has none."""
     place = folder / "posterior"
@@ -243,6 +233,6 @@ def write_posterior(s: Study, folder: Path) -> None:
     if s.average:
         place.mkdir(exist_ok=True)
         s.average.write_draws(str(place), output_files.write, lambda path: Path(path).read_text(encoding="utf-8"))
-        output_files.write(folder / "posterior.csv", _table(s.average.table()))
+        output_files.write(folder / "posterior.csv", output_files.table(s.average.table()))
     elif place.is_dir() and not any(place.iterdir()):
         place.rmdir()
