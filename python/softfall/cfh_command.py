@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import math
 import shlex
@@ -190,8 +191,8 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def find(o: argparse.Namespace, tell: Callable[[str], None], progress: Callable[[str], None], command: str) -> Study:
-    """Finds the height, and writes the files of the command. `command`: what was called, for the files."""
+def find(o: argparse.Namespace, tell: Callable[[str], None], progress: Callable[[str], None], command: str, page: bool = True) -> Study:
+    """Finds the height, and writes the files of the command, with its page or without. `command`: what was called, for the files."""
     folder = Path(o.output)
     _check(o)
     if folder.exists() and not folder.is_dir():
@@ -212,9 +213,11 @@ def find(o: argparse.Namespace, tell: Callable[[str], None], progress: Callable[
         bench.tell = progress
         _spread(s, bench, search, draws)
     s.simulated, s.found = bench.simulated, bench.found
-    cfh_page.write(s, folder)
+    summary = _summary(s, command)
+    if page:
+        cfh_page.write(s, folder, _digest(s, summary))
     _write_tables(s, folder)
-    output_files.write(folder / "cfh.json", json.dumps(_summary(s, command), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+    output_files.write(folder / "cfh.json", json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
     for name in STALE:
         (folder / name).unlink(missing_ok=True)
     for c, one in enumerate(s.result.crossings):
@@ -293,6 +296,12 @@ def _summary(s: Study, command: str) -> dict[str, Any]:
             "compression_table_end": _number(s.data_end), "critical_fall_height": height,
             "rig": {"file": s.options.rig, "pairs": rig.pairs, "g_eff_m_s2": _number(rig.gravity), "standard_error_m_s2": _number(rig.error)},
             "posterior": posterior, "criteria": criteria, "points": points}
+
+
+def _digest(s: Study, summary: dict[str, Any]) -> str:
+    """Returns a digest of what the page shows."""
+    shown = {key: value for key, value in summary.items() if key != "command_line"}
+    return hashlib.sha256(json.dumps([shown, [[(p.height, *p.value) for p in points] for points in s.draw_points]]).encode()).hexdigest()
 
 
 def _table(path: Path, heading: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:

@@ -130,8 +130,10 @@ def _picture(s: Study, criteria: Sequence[int]) -> bytes:
     return png(figure)
 
 
-def write(s: Study, folder: Path) -> None:
-    """Writes cfh.png and report.html into the folder."""
+def write(s: Study, folder: Path, digest: str) -> None:
+    """Writes cfh.png and report.html into the folder, unless a page with this digest of its figures is there."""
+    if (folder / "cfh.png").exists() and (folder / "report.html").exists() and f'"{digest}"' in (folder / "report.html").read_text(encoding="utf-8", errors="replace")[:2000]:
+        return
     output_files.write(folder / "cfh.png", _picture(s, (0, 1)))
 
     def text(value: float, digits: int) -> str:
@@ -149,4 +151,4 @@ def write(s: Study, folder: Path) -> None:
     output_files.write(folder / "report.html", render(
         "cfh.html", title=f"Critical fall height: {Path(s.options.case).resolve().parent.name}", said=said, kind=kind, rows=rows,
         limits=limits, intervals=intervals, percent=100 * (1 - s.options.quantile), pictures=[(name, base64_of(_picture(s, (c,)))) for c, name in enumerate(CRITERIA)], rig=bool(s.rig.pairs), ending=ENDINGS[s.ending],
-        program=f"softfall cfh {library.version()}", case=s.options.case, simulated=s.simulated, found=s.found))
+        program=f"softfall cfh {library.version()}", case=s.options.case, simulated=s.simulated, found=s.found, digest=digest))

@@ -306,7 +306,7 @@ OF_THE_DROP = (4, 5)  # exit codes of a model or a solution that fails: others e
 
 def search(p: Protocol, case: Case, condition: Condition, position: Position, folder: Path, posterior: str | None,
            options: Mapping[str, Any], limits: tuple[float | None, float | None] | None = None, shown: bool = True) -> Search:
-    """Searches the critical height below a folder, and simulates its drops with their curves if they are shown. `limits` of a_max (g) and HIC are those of the protocol unless given."""
+    """Searches the critical height below a folder, and simulates its drops with their curves and its page if they are shown. `limits` of a_max (g) and HIC are those of the protocol unless given."""
     folder /= "heights"
     folder.mkdir(parents=True, exist_ok=True)
     a_max, hic_value = limits or (p.limit_of("a_max_g"), p.limit_of("hic"))
@@ -314,7 +314,7 @@ def search(p: Protocol, case: Case, condition: Condition, position: Position, fo
     words = [f"--output={folder}", *(f"--set={key}={text}" for key, text in case.overrides.items()),
              *programs.options({**given, "posterior": posterior, "jobs": options.get("jobs")}), "--", str(case.path)]
     study = cfh_command.find(cfh_command.parser("softfall cfh").parse_args(words), lambda text: None, say if posterior else lambda text: None,
-                             f"critical height of {p.path}")
+                             f"critical height of {p.path}", page=shown)
     found = Search(condition.name, position.name, folder, json.loads((folder / "cfh.json").read_text(encoding="utf-8")), study)
     threads = options.get("threads")
     height = found.summary["critical_fall_height"].get("height_m")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
 
 from .array import Array
 
@@ -57,6 +56,7 @@ def rows_of(method: str, d: int, count: int) -> int:
 
 def _sobol(d: int, count: int, seed: int) -> Array:
     """The sequence from its first point after 0 on; another seed than 1 moves it as a whole (modulo 1; doi:10.1137/0713071)."""
+    from scipy.stats import qmc  # a third of a second that most commands do not need
     engine = qmc.Sobol(d, scramble=False)
     engine.fast_forward(1)
     points: Array = engine.random(count)

@@ -140,8 +140,9 @@ def test_the_height_is_that_whose_own_drop_reaches_the_limit(tmp_path: Path) -> 
     assert "already holds report.html" in run(CASE, "-o", tmp_path / "out", *SET, code=2)
     again = run(CASE, "-o", tmp_path / "out", *SET, "--force")
     assert "0 drops simulated" in again and summary(tmp_path / "out")["points"] == made["points"]
+    assert (tmp_path / "out/report.html").read_text() == page  # of the same figures
     lower = run(CASE, "-o", tmp_path / "out", *SET, "--force", "--limit-hic", 500)  # drops that are there serve another limit
-    assert summary(tmp_path / "out")["critical_fall_height"]["height_m"] < found["height_m"] and int(re.search(r"(\d+) were there", lower)[1]) >= 2  # type: ignore[index]
+    assert summary(tmp_path / "out")["critical_fall_height"]["height_m"] < found["height_m"] and "HIC = 500" in (tmp_path / "out/report.html").read_text() and int(re.search(r"(\d+) were there", lower)[1]) >= 2  # type: ignore[index]
     rig = tmp_path / "rig.csv"
     rig.write_text("height_m,speed_m_s\n1,4\n2,5.6568542\n")  # g_eff = 8 m/s2
     run(CASE, "-o", tmp_path / "rig", *SET, "--rig", rig)
@@ -149,6 +150,7 @@ def test_the_height_is_that_whose_own_drop_reaches_the_limit(tmp_path: Path) -> 
     assert on_rig["rig"]["g_eff_m_s2"] == pytest.approx(8) and on_rig["critical_fall_height"]["rig_height_m"] == pytest.approx(found["height_m"] * 9.80665 / 8, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_earlier_name_is_the_command(tmp_path: Path) -> None:
     """softfall-cfh has the options, the files and the exit codes of `softfall cfh`."""
     ended = subprocess.run([BIN / "softfall-cfh", CASE, "-o", tmp_path, *SET, "--heights", "0.5 m,1 m"], capture_output=True, text=True)
@@ -157,6 +159,7 @@ def test_the_earlier_name_is_the_command(tmp_path: Path) -> None:
     assert subprocess.run([BIN / "softfall-cfh", CASE, "--nonsense"], capture_output=True).returncode == 64
 
 
+@pytest.mark.slow
 def test_a_series_is_judged_by_the_drops_that_count(tmp_path: Path) -> None:
     """The mean of drops 2 and 3 from the height has the limit, the first drop is softer; a draw of a foam without memory has no place."""
     series, coarse = EXAMPLES / "series/case.cfg", ["--set=geometry.parameters.fine_spacing=25.0", "--set=geometry.parameters.outer_spacing=40.0", "--set=pad.mesh_error_limit=9.0"]
@@ -215,6 +218,7 @@ def test_heights_of_a_list_and_a_pad_without_a_height(tmp_path: Path) -> None:
     assert found["answer"].startswith("Critical fall height above 0.500 m")
 
 
+@pytest.mark.slow
 def test_a_search_that_was_killed_goes_on(tmp_path: Path) -> None:
     words = [str(BIN / "softfall"), "cfh", str(CASE), "-o", str(tmp_path / "out"), *SET, "-j", "2"]
     run(CASE, "-o", tmp_path / "whole", *SET, "-j", 1)
@@ -234,6 +238,7 @@ def test_a_search_that_was_killed_goes_on(tmp_path: Path) -> None:
     assert ours["points"] == whole["points"] and ours["critical_fall_height"] == whole["critical_fall_height"]
 
 
+@pytest.mark.slow
 def test_two_commands_in_one_folder_share_their_drops(tmp_path: Path) -> None:
     words = [str(BIN / "softfall"), "cfh", str(CASE), "-o", str(tmp_path), *SET, "--force", "-j", "1"]
     both = [subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(2)]
