@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How a geometry lies does not change a drop: a pad on a wall with pad.up, gravity across the blow, and a
  * STEP file in another unit. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include "base/mat3.h"
@@ -176,11 +177,14 @@ static void step_files_come_in_the_unit_of_the_case(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_wall_is_a_pad_that_lies),
         cmocka_unit_test(gravity_across_the_blow_moves_a_free_missile),
         cmocka_unit_test(faces_and_directions_are_checked),
         cmocka_unit_test(rotations_take_the_face_upwards),
         cmocka_unit_test(step_files_come_in_the_unit_of_the_case),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_wall_is_a_pad_that_lies),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Wrong command lines, wrong cases, damaged files: each is refused with one sentence that says what is wrong
  * and a code that is not 0, and files from before stay as they were, byte by byte. */
+#include "check.h"
 #include "io/h5_data.h"
 #include "model/model_io.h"
 #include "model_fixture.h"
@@ -429,7 +430,10 @@ int main(void) {
         cmocka_unit_test(truncated_files_are_refused),
         cmocka_unit_test(damaged_models_are_refused_with_what_is_wrong),
         cmocka_unit_test(files_of_newer_formats_or_without_content_are_refused),
+    };
+    const struct CMUnitTest slow[] = {
         cmocka_unit_test(flipped_bytes_never_crash_a_program),
     };
-    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+    return check_slow() ? cmocka_run_group_tests(slow, program_group_example, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
 }

@@ -2,6 +2,7 @@
 /* The meaning of the acceleration: the reading of an accelerometer by default, the kinematic acceleration on
  * request; that a force plate has its filter; and that the figures of a flat missile, whose contact begins
  * with an impulse, do not depend on the time step. */
+#include "check.h"
 #include "post/figures/verdict.h"
 
 #include "base/units.h"
@@ -170,7 +171,10 @@ int main(void) {
         cmocka_unit_test(the_reading_is_the_force_over_the_mass),
         cmocka_unit_test(a_force_plate_has_the_class_of_the_accelerometer),
         cmocka_unit_test(curves_begin_before_the_contact),
+    };
+    const struct CMUnitTest slow[] = {
         cmocka_unit_test(figures_of_a_flat_missile_do_not_depend_on_the_step),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole drops in memory on the coarse 50 mm pad (10 mm in the impact zone, 20 mm outside) at 4.5 m/s: the
  * balances that every run must keep, symmetry, reproducibility, and closed forms for what comes back. */
+#include "check.h"
 #include "extreme.h"
 #include "model_fixture.h"
 
@@ -372,8 +373,11 @@ int main(void) {
         cmocka_unit_test(hysteresis_returns_the_fraction_of_the_closed_form),
         cmocka_unit_test(elastic_pad_is_a_little_stiffer_than_uncoupled_columns),
         cmocka_unit_test(a_run_survives_the_pole_of_the_curve),
-        cmocka_unit_test(a_run_survives_a_curve_that_ends_softly),
         cmocka_unit_test(rate_factor_keeps_the_balance),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_run_survives_a_curve_that_ends_softly),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, NULL, NULL)
+                        : cmocka_run_group_tests(tests, NULL, NULL);
 }

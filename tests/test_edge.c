@@ -174,11 +174,11 @@ static void a_later_lock_up_with_other_exponents_is_estimated(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(estimates_agree_with_simulations),
-        cmocka_unit_test(the_change_by_stress_agrees_with_simulations),
         cmocka_unit_test(an_edge_is_not_overlooked),
-        cmocka_unit_test(a_later_lock_up_is_estimated),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_later_lock_up_is_estimated),
+        cmocka_unit_test(the_change_by_stress_agrees_with_simulations),
         cmocka_unit_test(estimates_agree_with_simulations_of_other_pads),
         cmocka_unit_test(a_later_edge_is_not_overlooked),
         cmocka_unit_test(a_later_lock_up_with_other_exponents_is_estimated),

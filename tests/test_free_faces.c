@@ -2,6 +2,7 @@
 /* The missile meets every free face of the pad, whether pad.contact names it or not: a pad whose group is a
  * part of its top against one whose group is the whole top, and a blow near an edge, where the side folds up
  * into the missile; the rim of a disc; and two edges that cross carry each other. By whole programs. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include <math.h>
@@ -227,10 +228,13 @@ static void ridges_in_symmetry_planes_carry(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_missile_touches_faces_that_are_not_named),
         cmocka_unit_test(a_rim_of_the_missile_presses_the_faces_between_nodes),
         cmocka_unit_test(edges_that_cross_carry_each_other),
-        cmocka_unit_test(ridges_in_symmetry_planes_carry),
     };
-    return cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(ridges_in_symmetry_planes_carry),
+        cmocka_unit_test(the_missile_touches_faces_that_are_not_named),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, program_group_case, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
 }

@@ -2,6 +2,7 @@
 /* Geometries that mean harm: none starts a program, none makes or changes a file, none hangs or takes the
  * memory, and each ends as a mesh or as one sentence. And a softfall-mesh that does anything, in place of the
  * real one. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include "pre/mesh/gmsh_session.h"
@@ -335,12 +336,15 @@ int main(void) {
         cmocka_unit_test(programs_are_not_started),
         cmocka_unit_test(files_are_not_written),
         cmocka_unit_test(only_plain_files_are_read),
-        cmocka_unit_test(work_has_an_end),
         cmocka_unit_test(everything_else_may_be_used),
         cmocka_unit_test(a_process_that_fails_is_told),
         cmocka_unit_test(an_ignored_signal_stays_ignored),
         cmocka_unit_test(without_filters_it_is_refused_unless_asked_for),
         cmocka_unit_test(what_was_read_is_listed),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(work_has_an_end),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, tear_down)
+                        : cmocka_run_group_tests(tests, set_up, tear_down);
 }

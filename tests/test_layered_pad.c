@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A pad of layers through the three programs: its figures by layer, the same bits for any number of threads
  * and after a restart, and what is refused. */
+#include "check.h"
 #include "extreme.h"
 #include "io/h5_data.h"
 #include "program_fixture.h"
@@ -341,12 +342,15 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(summary_tells_strain_and_energy_by_layer),
         cmocka_unit_test(threads_and_restarts_leave_every_bit),
-        cmocka_unit_test(large_slips_are_noted),
         cmocka_unit_test(layers_read_like_the_one_material),
         cmocka_unit_test(layers_that_cannot_be_meant_are_refused),
         cmocka_unit_test(layers_that_do_not_share_faces_are_refused),
         cmocka_unit_test(interfaces_come_before_the_older_keys),
-        cmocka_unit_test(contact_on_seams_gives_no_energy),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(contact_on_seams_gives_no_energy),
+        cmocka_unit_test(large_slips_are_noted),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* include/softfall/softfall.h as a host sees it, against what the programs compute. */
+#include "check.h"
 #include "io/h5_data.h"
 #include "program_fixture.h"
 
@@ -482,7 +483,6 @@ static void an_axisymmetric_drop_has_all_figures(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(meshes_are_shared),
-        cmocka_unit_test(a_series_has_missiles_of_its_own),
         cmocka_unit_test(settings_are_read),
         cmocka_unit_test(an_axisymmetric_drop_has_all_figures),
         cmocka_unit_test(warnings_go_to_the_sink_and_errors_to_the_caller),
@@ -494,5 +494,9 @@ int main(void) {
         cmocka_unit_test(fields_are_those_of_the_frames),
         cmocka_unit_test(the_next_drop_is_that_of_a_series),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_series_has_missiles_of_its_own),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, tear_down)
+                        : cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -3,6 +3,7 @@
  * a clamped circle (Hencky 1915), a drop on a mat against a cover of cells, momentum, energy, threads and
  * restart, wrong keys. */
 #include "case/read.h"
+#include "check.h"
 #include "model_fixture.h"
 #include "pre/make.h"
 #include "program_fixture.h"
@@ -277,9 +278,12 @@ int main(void) {
         cmocka_unit_test(a_homogeneous_strain_has_its_stress),
         cmocka_unit_test(the_bound_is_above_the_highest_frequency),
         cmocka_unit_test(a_clamped_circle_bulges_as_hencky_says),
-        cmocka_unit_test(a_membrane_acts_as_a_cover_of_cells),
         cmocka_unit_test(the_bits_are_the_same),
         cmocka_unit_test(wrong_membranes_are_refused),
     };
-    return cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_membrane_acts_as_a_cover_of_cells),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, program_group_case, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, program_group_case, program_group_tear_down);
 }

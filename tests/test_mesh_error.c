@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A mesh that is too coarse for its drop: refused, or named and marked in the files, by the law of
  * pre/drop_check.h. */
+#include "check.h"
 #include "io/h5_data.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
@@ -140,8 +141,11 @@ int main(void) {
         cmocka_unit_test(fine_mesh_is_not_named),
         cmocka_unit_test(zone_is_the_disc_of_the_sphere),
         cmocka_unit_test(symmetry_leaves_the_zone),
-        cmocka_unit_test(a_part_that_leads_has_its_own_width),
         cmocka_unit_test(prescribed_motion_has_no_estimate),
     };
-    return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_part_that_leads_has_its_own_width),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, program_group_folder, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

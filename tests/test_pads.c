@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pads that cannot be meant, by whole programs: each once gave a plausible a_max without a word. Coarse
  * blocks of 200 mm under the hemisphere. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include "model_fixture.h"
@@ -256,8 +257,11 @@ int main(void) {
         cmocka_unit_test(pads_with_missing_cells_are_refused),
         cmocka_unit_test(missiles_with_edges_that_point_at_the_pad_are_refused),
         cmocka_unit_test(pads_that_are_not_held_are_refused),
+    };
+    const struct CMUnitTest slow[] = {
         cmocka_unit_test(pads_in_one_piece_are_built),
         cmocka_unit_test(a_slit_makes_the_pad_softer),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

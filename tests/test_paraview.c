@@ -233,10 +233,13 @@ int main(void) {
         cmocka_unit_test(planes_that_contradict_the_factor_are_refused),
         cmocka_unit_test(a_state_without_its_template_is_a_warning),
         cmocka_unit_test(a_film_without_its_programs_names_the_package),
-        cmocka_unit_test(the_state_shows_a_missile_beside_the_middle_once),
         cmocka_unit_test(a_state_file_has_the_view_and_its_camera),
         cmocka_unit_test(draw_pad_draws_a_prescribed_motion),
-        cmocka_unit_test(a_film_and_its_picture_stand_beside_the_figures),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_film_and_its_picture_stand_beside_the_figures),
+        cmocka_unit_test(the_state_shows_a_missile_beside_the_middle_once),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

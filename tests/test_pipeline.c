@@ -456,7 +456,6 @@ int main(void) {
         cmocka_unit_test(impulses_balance_momenta),
         cmocka_unit_test(history_is_recorded_at_50_kHz_or_more),
         cmocka_unit_test(raw_and_filtered_peaks_agree),
-        cmocka_unit_test(estimate_of_the_steps_knows_the_rate_terms),
         cmocka_unit_test(no_local_collapse),
         cmocka_unit_test(files_say_where_they_come_from),
         cmocka_unit_test(existing_output_is_replaced_only_with_force),
@@ -466,5 +465,9 @@ int main(void) {
         cmocka_unit_test(help_and_version_are_there),
         cmocka_unit_test(paraview_reads_every_frame),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(estimate_of_the_steps_knows_the_rate_terms),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pad and missile that do not face each other: exchanged groups, a pad upside down, a missile inside the pad,
  * a surface turned away or without sides. */
+#include "check.h"
 #include "model_fixture.h"
 #include "pre/mesh/missile_shape.h"
 #include "program_fixture.h"
@@ -323,7 +324,10 @@ int main(void) {
         cmocka_unit_test(one_sided_surface_is_refused),
         cmocka_unit_test(sheet_drawn_either_way_is_one_model),
         cmocka_unit_test(impact_point_is_reported),
+    };
+    const struct CMUnitTest slow[] = {
         cmocka_unit_test(facets_within_facets_are_a_cavity),
     };
-    return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
+    return check_slow() ? cmocka_run_group_tests(slow, program_group_folder, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

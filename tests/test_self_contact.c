@@ -367,15 +367,15 @@ static void only_pads_that_can_touch_themselves_have_the_contact(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cut_block_is_as_stiff_as_the_whole_one),
         cmocka_unit_test(a_folded_sheet_meets_itself),
-        cmocka_unit_test(bodies_with_other_meshes_pass_on_the_stress),
         cmocka_unit_test(a_tile_on_feet_comes_down_to_the_floor),
+    };
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_cut_block_is_as_stiff_as_the_whole_one),
+        cmocka_unit_test(bodies_with_other_meshes_pass_on_the_stress),
         cmocka_unit_test(the_bits_do_not_depend_on_threads_or_restarts),
         cmocka_unit_test(a_loose_cover_acts_as_a_glued_one_while_it_is_pressed),
         cmocka_unit_test(only_pads_that_can_touch_themselves_have_the_contact),
-    };
-    const struct CMUnitTest slow[] = {
         cmocka_unit_test(bodies_of_triangles_pass_on_the_stress),
     };
     return check_slow() ? cmocka_run_group_tests(slow, program_group_case, program_group_tear_down)

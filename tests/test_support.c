@@ -344,17 +344,17 @@ static void the_missile_stops_at_a_support(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_flat_slab_acts_as_the_anvil),
-        cmocka_unit_test(several_supports_share_the_load),
         cmocka_unit_test(the_bits_are_the_same),
-        cmocka_unit_test(a_support_moves_with_its_case),
-        cmocka_unit_test(a_post_in_a_tube_acts_as_glue_does),
         cmocka_unit_test(a_slot_closes_onto_its_mirror_image),
         cmocka_unit_test(edges_of_a_post_press_the_faces_between_nodes),
         cmocka_unit_test(wrong_supports_are_refused),
         cmocka_unit_test(the_missile_stops_at_a_support),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_flat_slab_acts_as_the_anvil),
+        cmocka_unit_test(a_support_moves_with_its_case),
+        cmocka_unit_test(several_supports_share_the_load),
+        cmocka_unit_test(a_post_in_a_tube_acts_as_glue_does),
         cmocka_unit_test(edges_of_a_kerb_press_the_faces_between_nodes),
     };
     return check_slow() ? cmocka_run_group_tests(slow, program_group_case, program_group_tear_down)

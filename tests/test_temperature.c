@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Curves at several temperatures, between which the pad's lies. */
+#include "check.h"
 #include "extreme.h"
 #include "model_fixture.h"
 #include "post_check.h"
@@ -310,8 +311,11 @@ int main(void) {
         cmocka_unit_test(a_shift_of_the_rate_is_one_of_time),
         cmocka_unit_test(a_shift_needs_rates_and_a_place),
         cmocka_unit_test(a_rate_outside_the_data_is_told),
+    };
+    const struct CMUnitTest slow[] = {
         cmocka_unit_test(one_fit_has_a_curve_for_each_temperature),
         cmocka_unit_test(tests_at_temperatures_are_all_alike),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

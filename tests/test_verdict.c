@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The verdict on a run: its rows from figures at and beyond their bounds, and softfall-post as it shows them
  * on synthetic results. */
+#include "check.h"
 #include "post/figures/verdict.h"
 #include "post_fixture.h"
 
@@ -454,7 +455,10 @@ int main(void) {
         cmocka_unit_test(softfall_post_shows_the_verdict_first_and_in_summary_json),
         cmocka_unit_test(the_exit_status_of_strict_is_the_verdict),
         cmocka_unit_test(a_warning_of_softfall_solve_reaches_the_verdict),
+    };
+    const struct CMUnitTest slow[] = {
         cmocka_unit_test(local_collapse_does_not_depend_on_the_thickness),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

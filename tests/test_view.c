@@ -282,9 +282,12 @@ int main(void) {
         cmocka_unit_test(words_about_the_test_stand_in_the_summary),
         cmocka_unit_test(words_that_break_a_line_are_refused),
         cmocka_unit_test(a_quarter_works_on_a_desktop_and_a_phone),
-        cmocka_unit_test(a_compression_test_works),
-        cmocka_unit_test(a_skin_alone_works),
         cmocka_unit_test(a_hostile_name_and_one_frame_work),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_skin_alone_works),
+        cmocka_unit_test(a_compression_test_works),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

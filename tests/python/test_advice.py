@@ -367,7 +367,7 @@ def write_record(path, height, a_max):
     np.savetxt(path, np.column_stack([t, pulse]), delimiter=",", header="time (s),acceleration (g)", comments="", fmt="%.9g")
 
 
-@pytest.fixture(params=[20, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.fixture(params=[8, pytest.param(100, marks=pytest.mark.slow)])
 def posterior(request, tmp_path, monkeypatch):
     """The first draws of the example: so few that they would be refused."""
     folder = tmp_path / "posterior"

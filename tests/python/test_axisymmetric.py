@@ -86,6 +86,7 @@ def test_nothing_moves_out_of_the_section(tmp_path):
         assert abs(results["peak/displacement"][:, 1]).max() == 0
 
 
+@pytest.mark.slow
 def test_later_drops_on_a_pad_with_set_are_those_of_the_quarter(tmp_path):
     """A permanent set moves the reference: the hoop row, too."""
     later = []
@@ -102,6 +103,7 @@ ERRORS = {"a_max_g": "a_max_mesh_error", "hic": "hic_mesh_error", "max_indentati
 FINE = ["geometry.parameters.fine_spacing=2.5", "geometry.parameters.outer_spacing=5.0"]
 
 
+@pytest.mark.slow
 def test_errors_hold_against_finer_meshes(tmp_path):
     """verify/study_section_errors.py has more drops; a quarter takes its errors from the section, too."""
     truth = figures(tmp_path, QUARTER, *FINE, options=["--axisymmetric", "--estimate"])
@@ -115,6 +117,7 @@ def test_errors_hold_against_finer_meshes(tmp_path):
         assert check["value"] == told["a_max_mesh_error"]
 
 
+@pytest.mark.slow
 def test_edge_is_that_of_drops(tmp_path):
     """Also of a foam that locks up, where the slope of the force sees no cliff."""
     for locks in ([], ['missile.velocity="5.148 m/s"', 'material.densification={rule="H2"; start=0.76; limit=0.83; exponent=1.0;}']):
@@ -140,6 +143,7 @@ def test_the_section_is_of_a_new_pad_and_a_wide_one(tmp_path):
     assert figures(tmp_path, QUARTER, *narrow)["hic_mesh_error"] is None
 
 
+@pytest.mark.slow
 def test_other_drops_have_the_error_of_a_plate_like_them(tmp_path):
     """A whole pad has no section, and the plate that is like it is its own: both know the error by halving the spacing (theory.md, 84), of which
     the formula knows nothing in a foam that locks up. On a foam that does not, the formula's error is the larger one, and stays."""

@@ -127,6 +127,7 @@ def test_a_drop_that_is_there_is_not_computed_again(case, tmp_path):
     assert first.results.stat().st_mtime_ns > stamp
 
 
+@pytest.mark.slow
 def test_names_with_blanks_and_umlauts(case, tmp_path):
     source = tmp_path / "my päd"
     program("new", source, "--from", "eva50-v4.5", cwd=".")
@@ -207,6 +208,7 @@ def test_a_killed_python_leaves_a_run_that_the_next_one_waits_for_or_resumes(slo
     assert same(whole, slow.run(output=tmp_path / "killed", threads=2))
 
 
+@pytest.mark.slow
 def test_runs_of_one_folder_at_the_same_time_are_one(case, tmp_path):
     text = f"import softfall; softfall.Case('pad/case.cfg', {{'missile.mass': '5 kg'}}).run(output={str(tmp_path)!r})"
     children = [subprocess.Popen([sys.executable, "-W", "ignore", "-c", text]) for _ in range(3)]

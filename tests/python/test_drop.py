@@ -346,6 +346,7 @@ def test_a_series_has_all_its_drops(tmp_path):
         other.series
 
 
+@pytest.mark.slow
 def test_a_listed_series_has_the_models_of_its_drops(tmp_path):
     """Drops of their own speed have models of their own beside the first, and a series that is there is not run again."""
     source = pathlib.Path(os.environ["SF_SOURCE_DIR"])
@@ -359,6 +360,7 @@ def test_a_listed_series_has_the_models_of_its_drops(tmp_path):
     assert drops[1].results.stat().st_mtime_ns == before
 
 
+@pytest.mark.slow
 def test_a_series_that_was_stopped_in_a_later_drop_is_resumed_there(tmp_path):
     """The drops before it stay as they are, and all are those of a series without a stop."""
     source = pathlib.Path(os.environ["SF_SOURCE_DIR"])

@@ -208,6 +208,7 @@ def test_no_input_is_replaced(lab: Path, tmp_path: Path, monkeypatch: pytest.Mon
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
+@pytest.mark.slow
 def test_the_free_curve_is_that_of_softfall_fit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     config = "examples/fit/compression/fit.cfg"
@@ -334,6 +335,7 @@ def test_a_known_hyperfoam_is_found_from_one_file(tmp_path: Path) -> None:
     assert [read.values[name] for name in curve_fit.UNLOADING] == pytest.approx(UNLOADING, abs=0.02) and read.values["DAMP"] == 0.2 and read.values["informed_strain"] == pytest.approx(0.7)
 
 
+@pytest.mark.slow
 def test_vn600_as_a_hyperfoam(tmp_path: Path) -> None:
     slow = hyperfoam_fit.run(compression.read(str(ROOT / "examples/fit/hyperfoam/vn600_quasistatic.cfg")))
     assert 0.23 < slow.poisson[0] < 0.26 and 0.155 < slow.poisson[1] < 0.175 and slow.is_good
@@ -364,6 +366,7 @@ def test_bad_files_of_hyperfoams_are_refused(tmp_path: Path, text: str, words: s
         compression.read(str(tmp_path / "bad.cfg"))
 
 
+@pytest.mark.slow
 def test_a_pressed_cube_has_the_stress_of_free_sides(tmp_path: Path) -> None:
     """The solver's cube between smooth platens bulges freely: its force is the closed form's, at every depth."""
     model, results = tmp_path / "m.h5", tmp_path / "r.h5"
@@ -378,6 +381,7 @@ def test_a_pressed_cube_has_the_stress_of_free_sides(tmp_path: Path) -> None:
     assert force[keep].sum() / closed.sum() == pytest.approx(1, abs=0.005) and np.abs(force[keep] / closed - 1).max() < 0.05
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("words, warned", [([], False), (["--set", "material.term_1.nu=0.4"], True)])
 def test_a_large_poisson_ratio_is_warned_of(tmp_path: Path, words: list[str], warned: bool) -> None:
     """By the ratio of the whole law, not of a term: VN600 has a small term of 0.45."""

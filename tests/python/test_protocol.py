@@ -405,6 +405,7 @@ kind = "cushion curve"
 """ + "".join(f'[[clause]]\nof = "{of}"\ntext = "x"\nsource = "y"\nstatus = "confirmed"\n' for of in ("missile", "drops", "figure", "result"))
 
 
+@pytest.mark.slow
 def test_masses_in_several_units_are_all_dropped(case, tmp_path):
     (tmp_path / "p.toml").write_text(CUSHION.replace("MASSES", '"1 kg", "1500 g", "2kg", "6 lb"'))
     p = protocol.read(str(tmp_path / "p.toml"))
@@ -561,6 +562,7 @@ def test_a_pad_is_simulated_measured_and_compared(case, drop, tmp_path):
     assert wrong.returncode == 2 and "neither worst, limit, all" in wrong.stderr
 
 
+@pytest.mark.slow
 def test_a_critical_height_has_the_view_of_the_drop_from_there(case, tmp_path):
     text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
     text = text.replace('kind = "pass"  ', 'kind = "critical height"  ')
@@ -573,6 +575,7 @@ def test_a_critical_height_has_the_view_of_the_drop_from_there(case, tmp_path):
     assert told["a_max_g"] == pytest.approx(80, rel=0.01)  # the limit of own.toml
 
 
+@pytest.mark.slow
 def test_a_search_shows_its_drops_beside_measured_ones(case, tmp_path):
     """Each drop of the search is a row with its figures and its curve; heights that were measured are simulated and compared."""
     text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")
@@ -667,6 +670,7 @@ def test_later_drops_of_a_foam_with_memory_are_simulated_and_count(remembering, 
     assert third.figures["a_max_g"] == pytest.approx(a[2], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_critical_height_is_that_of_the_drops_that_count(remembering, tmp_path):
     text = re.sub(r"conditions = \[.*?\n\]\n", "", (protocol.folder() / "f1292.toml").read_text(), flags=re.S)
     assert "count = 3" in text and "counted = [2, 3]" in text
@@ -737,6 +741,7 @@ def test_a_case_is_refined_by_its_two_drops(case, slow):
         softfall.refine(case, ratio=9)
 
 
+@pytest.mark.slow
 def test_spacings_that_the_case_leaves_to_the_geometry_are_coarser_too(case):
     text = case.path.read_text()
     left = case.path.with_name("left.cfg")

@@ -71,6 +71,7 @@ def test_the_page_shows_the_figures_of_the_summary_the_answer_first(out):
     assert "EVA foam of 35 kg/m3" in page and (out / "acceleration.png").read_bytes()[:4] == b"\x89PNG"
 
 
+@pytest.mark.slow
 def test_the_title_is_made_of_the_values_and_not_of_the_comments_of_the_case(case, tmp_path):
     case.update({"geometry.parameters.thickness": 60, "missile.velocity": "5 m/s", "report.sample": 'tile "A" {1} [x] \\ </script> & co'})
     drop = case.run()

@@ -104,6 +104,7 @@ def test_a_drop_is_found_by_its_content_wherever_the_case_stands(pad, tmp_path):
     assert stamps(other) == before and shared.splitlines()[-6:-2] == first.splitlines()[-6:-2]
 
 
+@pytest.mark.slow
 def test_a_file_that_a_geometry_includes_counts(pad):
     geo = pad / "geo/pad.geo"
     (pad / "geo/whole.geo").write_text(geo.read_text())
@@ -138,6 +139,7 @@ def test_a_run_that_is_ended_in_the_middle_goes_on_or_starts_again(pad, number, 
     assert run(*SLOW, cwd=pad).splitlines()[-5:-2] == whole.splitlines()[-5:-2]
 
 
+@pytest.mark.slow
 def test_processes_on_one_folder_at_the_same_time_compute_a_drop_once(pad):
     shutil.rmtree(pad / "softfall-runs")
     children = [subprocess.Popen(command("run", *more), cwd=pad, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
@@ -179,6 +181,7 @@ def test_strict_has_the_exit_codes_of_softfall_post(pad):
     run(cwd=pad)
 
 
+@pytest.mark.slow
 def test_every_drop_of_a_series_is_told(tmp_path):
     coarse = ("series", "drops=2", "fine_spacing=20", "outer_spacing=20", "element_size=20", "mesh_error_limit=1")
     printed = run(*coarse, cwd=tmp_path)
@@ -273,6 +276,7 @@ def on_a_terminal(*words, cwd, columns=80):
     return written.decode()
 
 
+@pytest.mark.slow
 def test_a_terminal_has_one_line_of_progress(pad):
     written = on_a_terminal(*SLOW, "thickness=55", cwd=pad)
     bars = [piece for piece in re.split(r"[\r\n]+", written) if " %" in piece and "[" in piece]

@@ -130,6 +130,7 @@ def test_nothing_is_lost_or_done_twice_by_kills(tmp_path: Path, times: int) -> N
     assert not list((tmp_path / "out/at-work").iterdir())
 
 
+@pytest.mark.slow
 def test_two_processes_share_the_work_of_a_study(tmp_path: Path) -> None:
     path = write_plan(tmp_path, SPEEDS % 12)
     both = [start(path, "-o", tmp_path / "out", "--jobs", "1") for _ in range(2)]
@@ -140,6 +141,7 @@ def test_two_processes_share_the_work_of_a_study(tmp_path: Path) -> None:
     assert all(row["run_status"] == "done" for row in table(tmp_path / "out"))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("snakemake"), reason="Snakemake is not installed")
 def test_an_engine_gives_blocks_of_rows_to_jobs(tmp_path: Path) -> None:
     path = write_plan(tmp_path, SPEEDS % 9)
@@ -158,6 +160,7 @@ def test_an_engine_gives_blocks_of_rows_to_jobs(tmp_path: Path) -> None:
     assert "add --engine snakemake" in sweep(path, "-o", tmp_path / "new", "--profile", "slurm", code=2)
 
 
+@pytest.mark.slow
 def test_a_full_disk_ends_the_campaign_and_loses_nothing(tmp_path: Path) -> None:
     path = write_plan(tmp_path, SPEEDS % 12)
 
@@ -226,6 +229,7 @@ def test_a_failed_run_keeps_its_sentence_and_is_done_again_on_request(tmp_path: 
     assert "drops simulated, 1 were there" in again and table(tmp_path / "out") == rows
 
 
+@pytest.mark.slow
 def test_a_geometry_that_changes_is_looked_at_again(tmp_path: Path) -> None:
     """A file that only the mesher reads, while the campaign runs and afterwards."""
     (tmp_path / "section.geo").write_text('Include "size.geo";\n' + (EXAMPLES.parent / "geo/section.geo").read_text())
@@ -259,6 +263,7 @@ def test_hostile_files_are_refused(tmp_path: Path, kind: str, named_by: str) -> 
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_the_earlier_name_takes_the_same_options(tmp_path: Path) -> None:
     path = write_plan(tmp_path, SPEEDS % 2)
     def old(*words: object) -> subprocess.CompletedProcess[str]:
