@@ -22,7 +22,7 @@ static void drop_on(const program_place *p, int spacing, double speed, double th
         snprintf(lock, sizeof lock, LOCKED, limit, exponent);
     program_succeed(
         p, "pre",
-        "good.cfg -o m.h5 --force --share shared --estimate %s --set missile.velocity='\"%.6f m/s\"' --set "
+        "good.cfg -o m.h5 --force --estimate %s --set missile.velocity='\"%.6f m/s\"' --set "
         "geometry.parameters.thickness=%.6f%s",
         program_coarse(spacing), speed, thickness, lock);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
@@ -63,7 +63,7 @@ static void changes_by_stress(const program_place *p, double change[2]) {
             by);
         program_succeed(
             p, "pre",
-            "good.cfg -o m.h5 --force --share shared --estimate %s --set material.curve='\"materials/other.csv\"' --set "
+            "good.cfg -o m.h5 --force --estimate %s --set material.curve='\"materials/other.csv\"' --set "
             "material.E='\"%.9g MPa\"' --set material.ED='\"%.9g MPa\"'",
             program_coarse(20), by * 0.4136, by * 1.52312043584);
         program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");

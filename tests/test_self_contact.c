@@ -56,7 +56,7 @@ typedef struct figures {
 } figures;
 
 static figures run(const program_place *p, const char *overrides) {
-    program_succeed(p, "pre", "case.cfg -o m.h5 --force --share shared %s", overrides);
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force %s", overrides);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
     program_figures(p, "r.h5 -o out --force");
     return (figures){.force = program_history_largest(p, "contact_force_N"),
@@ -69,7 +69,7 @@ static figures run(const program_place *p, const char *overrides) {
 
 /* A run without contact ends with what the foam has passed through, and where: its undeformed place, mm. */
 static void passes_through(const program_place *p, const char *what, double place[3]) {
-    program_succeed(p, "pre", "case.cfg -o m.h5 --force --share shared --set pad.self_contact='\"off\"'");
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.self_contact='\"off\"'");
     program_result r = program_run(p, "solve", "m.h5 -o r.h5 --force -t 1");
     char *through = strstr(r.err, "has passed through "), *undeformed = strstr(r.err, "(undeformed (");
     assert_int_equal(r.code, 5);
@@ -300,7 +300,7 @@ static void a_loose_cover_acts_as_a_glued_one_while_it_is_pressed(void **state) 
         p, "cp \"$SF_SOURCE_DIR\"/examples/layers/*.c* . && cp \"$SF_SOURCE_DIR/geo/layers.geo\" geo/ && "
            "sed -i 's#\\.\\./\\.\\./geo#geo#; s#\\.\\./materials#materials#' case.cfg");
     const char *coarse =
-        "--share shared --set geometry.parameters.fine_spacing=15.0 --set geometry.parameters.outer_spacing=20.0 --set "
+        "--set geometry.parameters.fine_spacing=15.0 --set geometry.parameters.outer_spacing=20.0 --set "
         "pad.mesh_error_limit=1 --set solver.end_time='\"16 ms\"' ";
     char words[512];
     figures glued = run(p, coarse);

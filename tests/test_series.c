@@ -28,7 +28,7 @@ static program_result make_model(const program_place *p, const char *name, const
     snprintf(coarse, sizeof coarse, "%s", program_coarse(20));
     return program_run(
         p, "pre",
-        "'%s' -o %s --force --share shared %s --set material=@'%s' --set material.HU=0.05 --set material.ALPHA=0.5 "
+        "'%s' -o %s --force %s --set material=@'%s' --set material.HU=0.05 --set material.ALPHA=0.5 "
         "--set material.memory.reload=0.4 --set material.memory.drift=0.2 "
         "--set material.memory.recovery=0.1 --set material.memory.permanent=0.2 %s",
         fixture_source(EXAMPLE), name, coarse, fixture_source("tests/materials/eva35_first.cfg"), more);

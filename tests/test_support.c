@@ -22,7 +22,7 @@ typedef struct figures {
 } figures;
 
 static figures run(const program_place *p, const char *overrides) {
-    program_succeed(p, "pre", "case.cfg -o m.h5 --force --share shared --set pad.mesh_error_limit=10 %s",
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 %s",
                     overrides);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
     program_figures(p, "r.h5 -o out --force");
@@ -238,7 +238,7 @@ static void edges_press_the_faces_between_nodes(const program_place *p, const ch
     for (int k = 0; k < 2; k++) {
         program_succeed(
             p, "pre",
-            "case.cfg -o m.h5 --force --share shared --set pad.mesh_error_limit=10 --set missile.velocity='\"3 m/s\"' "
+            "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 --set missile.velocity='\"3 m/s\"' "
             "--set geometry.parameters.side=200.0 --set geometry.parameters.zone_side=140.0 "
             "--set solver.end_time='\"24 ms\"' " FINER_PAD
             "--set pad.fixed=[] --set support.file='\"geo/%s.geo\"' --set support.parameters='{ size = %d; }'",
@@ -268,7 +268,7 @@ static void edges_of_a_kerb_press_the_faces_between_nodes(void **state) {
 
 static void refuse(const program_place *p, const char *words, const char *sentence) {
     program_result r =
-        program_run(p, "pre", "case.cfg -o bad.h5 --force --share shared --set pad.mesh_error_limit=10 %s%s",
+        program_run(p, "pre", "case.cfg -o bad.h5 --force --set pad.mesh_error_limit=10 %s%s",
                     FINER_PAD "--set geometry.parameters.side=250.0 ", words);
     if (r.code != 2 || !strstr(r.err, sentence))
         fail_msg("%s: exit code %d, %s", words, r.code, r.err);
