@@ -367,7 +367,6 @@ int main(void) {
         cmocka_unit_test(drop_to_rebound_keeps_every_balance),
         cmocka_unit_test(energy_taken_from_the_missile_is_found_in_the_pad),
         cmocka_unit_test(same_bits_for_one_to_four_threads),
-        cmocka_unit_test(quarter_and_full_model_give_the_same_peak),
         cmocka_unit_test(the_kinetic_energy_of_the_pad_is_that_of_the_present_time),
         cmocka_unit_test(elastic_drop_gives_its_energy_back),
         cmocka_unit_test(hysteresis_returns_the_fraction_of_the_closed_form),
@@ -376,6 +375,7 @@ int main(void) {
         cmocka_unit_test(rate_factor_keeps_the_balance),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(quarter_and_full_model_give_the_same_peak),
         cmocka_unit_test(a_run_survives_a_curve_that_ends_softly),
     };
     return check_slow() ? cmocka_run_group_tests(slow, NULL, NULL)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The foam on the missile's path: the thickness of pads that are no flat blocks, parts of a missile that pass
  * between the nodes, missiles that are not symmetric about a plane of the pad. */
+#include "check.h"
 #include "model/model_io.h"
 #include "program_fixture.h"
 
@@ -154,9 +155,12 @@ static void a_part_between_the_nodes_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(thickness_is_the_foam_on_the_missiles_path),
-        cmocka_unit_test(a_motion_that_the_foam_cannot_follow_is_refused),
         cmocka_unit_test(a_missile_that_is_not_symmetric_needs_the_whole_pad),
         cmocka_unit_test(a_part_between_the_nodes_is_refused),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_motion_that_the_foam_cannot_follow_is_refused),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

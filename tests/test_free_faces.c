@@ -228,10 +228,10 @@ static void ridges_in_symmetry_planes_carry(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_rim_of_the_missile_presses_the_faces_between_nodes),
         cmocka_unit_test(edges_that_cross_carry_each_other),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_rim_of_the_missile_presses_the_faces_between_nodes),
         cmocka_unit_test(ridges_in_symmetry_planes_carry),
         cmocka_unit_test(the_missile_touches_faces_that_are_not_named),
     };

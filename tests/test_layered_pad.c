@@ -341,13 +341,13 @@ static void contact_on_seams_gives_no_energy(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(summary_tells_strain_and_energy_by_layer),
-        cmocka_unit_test(threads_and_restarts_leave_every_bit),
         cmocka_unit_test(layers_read_like_the_one_material),
         cmocka_unit_test(layers_that_cannot_be_meant_are_refused),
         cmocka_unit_test(layers_that_do_not_share_faces_are_refused),
-        cmocka_unit_test(interfaces_come_before_the_older_keys),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(interfaces_come_before_the_older_keys),
+        cmocka_unit_test(threads_and_restarts_leave_every_bit),
         cmocka_unit_test(contact_on_seams_gives_no_energy),
         cmocka_unit_test(large_slips_are_noted),
     };

@@ -139,11 +139,11 @@ int main(void) {
         cmocka_unit_test(coarse_mesh_is_refused_with_its_error),
         cmocka_unit_test(allowed_coarse_mesh_is_marked),
         cmocka_unit_test(fine_mesh_is_not_named),
-        cmocka_unit_test(zone_is_the_disc_of_the_sphere),
         cmocka_unit_test(symmetry_leaves_the_zone),
         cmocka_unit_test(prescribed_motion_has_no_estimate),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(zone_is_the_disc_of_the_sphere),
         cmocka_unit_test(a_part_that_leads_has_its_own_width),
     };
     return check_slow() ? cmocka_run_group_tests(slow, program_group_folder, program_group_tear_down)

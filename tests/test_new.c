@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* softfall-new as a user runs it, in folders far from the examples. */
+#include "check.h"
 #include "program_fixture.h"
 
 #include <setjmp.h>
@@ -124,10 +125,13 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_list_has_every_example),
         cmocka_unit_test(a_new_case_runs_as_it_stands),
-        cmocka_unit_test(the_commands_of_the_readme_run),
         cmocka_unit_test(any_case_can_be_taken),
         cmocka_unit_test(refusals_leave_nothing),
         cmocka_unit_test(an_installed_program_finds_its_examples),
     };
-    return cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(the_commands_of_the_readme_run),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, program_group_folder, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, program_group_folder, program_group_tear_down);
 }

@@ -234,9 +234,9 @@ int main(void) {
         cmocka_unit_test(a_state_without_its_template_is_a_warning),
         cmocka_unit_test(a_film_without_its_programs_names_the_package),
         cmocka_unit_test(a_state_file_has_the_view_and_its_camera),
-        cmocka_unit_test(draw_pad_draws_a_prescribed_motion),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(draw_pad_draws_a_prescribed_motion),
         cmocka_unit_test(a_film_and_its_picture_stand_beside_the_figures),
         cmocka_unit_test(the_state_shows_a_missile_beside_the_middle_once),
     };

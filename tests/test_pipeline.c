@@ -460,12 +460,12 @@ int main(void) {
         cmocka_unit_test(files_say_where_they_come_from),
         cmocka_unit_test(existing_output_is_replaced_only_with_force),
         cmocka_unit_test(set_overrides_a_key_of_the_case),
-        cmocka_unit_test(compression_test_runs_to_its_end_and_is_no_drop),
         cmocka_unit_test(interrupted_run_leaves_readable_results),
         cmocka_unit_test(help_and_version_are_there),
         cmocka_unit_test(paraview_reads_every_frame),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(compression_test_runs_to_its_end_and_is_no_drop),
         cmocka_unit_test(estimate_of_the_steps_knows_the_rate_terms),
     };
     return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)

@@ -600,7 +600,6 @@ static void rebounded_run_goes_on_when_an_end_time_is_given(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finished_run_goes_on_to_a_later_end),
-        cmocka_unit_test(rate_factor_goes_on_with_the_same_bits),
         cmocka_unit_test(interrupted_run_goes_on),
         cmocka_unit_test(killed_run_loses_nothing),
         cmocka_unit_test(interruption_at_once_leaves_a_checkpoint),
@@ -609,10 +608,11 @@ int main(void) {
         cmocka_unit_test(damaged_or_foreign_checkpoint_is_refused),
         cmocka_unit_test(nothing_is_replaced_without_force),
         cmocka_unit_test(model_that_cannot_be_built_costs_nothing),
-        cmocka_unit_test(failed_run_leaves_its_state),
-        cmocka_unit_test(overflow_leaves_the_last_finite_state),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(overflow_leaves_the_last_finite_state),
+        cmocka_unit_test(failed_run_leaves_its_state),
+        cmocka_unit_test(rate_factor_goes_on_with_the_same_bits),
         cmocka_unit_test(killed_run_loses_nothing),
         cmocka_unit_test(model_may_change_during_a_run),
         cmocka_unit_test(failure_in_the_first_step_has_results),

@@ -367,10 +367,10 @@ static void only_pads_that_can_touch_themselves_have_the_contact(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_folded_sheet_meets_itself),
         cmocka_unit_test(a_tile_on_feet_comes_down_to_the_floor),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_folded_sheet_meets_itself),
         cmocka_unit_test(a_cut_block_is_as_stiff_as_the_whole_one),
         cmocka_unit_test(bodies_with_other_meshes_pass_on_the_stress),
         cmocka_unit_test(the_bits_do_not_depend_on_threads_or_restarts),

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The permanent set: the reference that it moves, its recovery, later drops on it against a thinner pad,
  * resumed and run one by one, and what is refused. */
+#include "check.h"
 #include "extreme.h"
 #include "io/h5_data.h"
 #include "model/model_io.h"
@@ -378,10 +379,13 @@ int main(void) {
         cmocka_unit_test(held_nodes_stay),
         cmocka_unit_test(impossible_sets_are_refused),
         cmocka_unit_test(rests_recover_in_closed_form),
-        cmocka_unit_test(bits_are_those_of_single_runs),
         cmocka_unit_test(frames_and_figures_show_the_set),
         cmocka_unit_test(wrong_sets_are_refused),
         cmocka_unit_test(the_second_drop_is_on_a_thinner_pad),
     };
-    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(bits_are_those_of_single_runs),
+    };
+    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
+                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

@@ -22,8 +22,7 @@ typedef struct figures {
 } figures;
 
 static figures run(const program_place *p, const char *overrides) {
-    program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 %s",
-                    overrides);
+    program_succeed(p, "pre", "case.cfg -o m.h5 --force --set pad.mesh_error_limit=10 %s", overrides);
     program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
     program_figures(p, "r.h5 -o out --force");
     figures f = {.a_max = program_file_number(p, "out/summary.json", "a_max_g"),
@@ -267,9 +266,8 @@ static void edges_of_a_kerb_press_the_faces_between_nodes(void **state) {
 }
 
 static void refuse(const program_place *p, const char *words, const char *sentence) {
-    program_result r =
-        program_run(p, "pre", "case.cfg -o bad.h5 --force --set pad.mesh_error_limit=10 %s%s",
-                    FINER_PAD "--set geometry.parameters.side=250.0 ", words);
+    program_result r = program_run(p, "pre", "case.cfg -o bad.h5 --force --set pad.mesh_error_limit=10 %s%s",
+                                   FINER_PAD "--set geometry.parameters.side=250.0 ", words);
     if (r.code != 2 || !strstr(r.err, sentence))
         fail_msg("%s: exit code %d, %s", words, r.code, r.err);
 }
@@ -344,13 +342,13 @@ static void the_missile_stops_at_a_support(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_bits_are_the_same),
         cmocka_unit_test(a_slot_closes_onto_its_mirror_image),
-        cmocka_unit_test(edges_of_a_post_press_the_faces_between_nodes),
         cmocka_unit_test(wrong_supports_are_refused),
         cmocka_unit_test(the_missile_stops_at_a_support),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(edges_of_a_post_press_the_faces_between_nodes),
+        cmocka_unit_test(the_bits_are_the_same),
         cmocka_unit_test(a_flat_slab_acts_as_the_anvil),
         cmocka_unit_test(a_support_moves_with_its_case),
         cmocka_unit_test(several_supports_share_the_load),

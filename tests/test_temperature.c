@@ -310,9 +310,9 @@ int main(void) {
         cmocka_unit_test(what_the_data_do_not_say_is_refused),
         cmocka_unit_test(a_shift_of_the_rate_is_one_of_time),
         cmocka_unit_test(a_shift_needs_rates_and_a_place),
-        cmocka_unit_test(a_rate_outside_the_data_is_told),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_rate_outside_the_data_is_told),
         cmocka_unit_test(one_fit_has_a_curve_for_each_temperature),
         cmocka_unit_test(tests_at_temperatures_are_all_alike),
     };

@@ -282,9 +282,9 @@ int main(void) {
         cmocka_unit_test(words_about_the_test_stand_in_the_summary),
         cmocka_unit_test(words_that_break_a_line_are_refused),
         cmocka_unit_test(a_quarter_works_on_a_desktop_and_a_phone),
-        cmocka_unit_test(a_hostile_name_and_one_frame_work),
     };
     const struct CMUnitTest slow[] = {
+        cmocka_unit_test(a_hostile_name_and_one_frame_work),
         cmocka_unit_test(a_skin_alone_works),
         cmocka_unit_test(a_compression_test_works),
     };

@@ -137,6 +137,7 @@ def test_names_with_blanks_and_umlauts(case, tmp_path):
     assert drop.figures["hic"] == case.run().figures["hic"] and drop.report().exists()
 
 
+@pytest.mark.slow
 def test_other_values_get_another_folder(case):
     """Also two round values, whose changes could cancel in the hash of a model."""
     places = set()

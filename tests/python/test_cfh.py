@@ -174,6 +174,7 @@ def test_a_series_is_judged_by_the_drops_that_count(tmp_path: Path) -> None:
         assert sentence in run(series, "-o", tmp_path / "none", *coarse, *words, code=2)
 
 
+@pytest.mark.slow
 def test_a_pad_of_layers_has_a_height_and_no_place_for_one_material(tmp_path: Path) -> None:
     layers = EXAMPLES / "layers/case.cfg"
     words = [f"--set=geometry.parameters.{key}" for key in ("fine_spacing=20.0", "outer_spacing=20.0", "side=160.0", "zone_side=160.0", "upper=40.0", "cover=20.0")]

@@ -277,6 +277,7 @@ def test_the_version_is_that_of_the_programs(place):
 
 # ---- folders ----
 
+@pytest.mark.slow
 def test_a_folder_that_moves_keeps_its_drop(case, tmp_path):
     first = case.run(output=tmp_path / "a")
     hic = first.figures["hic"]

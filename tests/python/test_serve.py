@@ -179,7 +179,7 @@ def test_a_client_that_goes_away_ends_nothing(service):
     half.close()
 
 
-@pytest.mark.parametrize("number, code", [(signal.SIGTERM, 0), (signal.SIGKILL, -9)])
+@pytest.mark.parametrize("number, code", [pytest.param(signal.SIGTERM, 0, marks=pytest.mark.slow), (signal.SIGKILL, -9)])
 def test_a_server_that_is_ended_in_a_drop_finds_it_again(here, slow, number, code):
     speed = 4 + 0.01 * int(number)
     options = ["--input=missile.velocity [m/s]", "--output=hic", "--threads=1", *(f"--set={key}={value}" for key, value in slow.overrides.items())]

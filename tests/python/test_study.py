@@ -83,6 +83,7 @@ def test_a_function_is_the_figure_of_the_drop(case, drop):
     assert g.drop([4.5, 50]).results == g.drop([4.5, 50]).results
 
 
+@pytest.mark.slow
 def test_scipy_finds_the_speed_of_a_limit(case):
     f = softfall.function(case, "missile.velocity [m/s]", "hic")
     speed = scipy.optimize.brentq(lambda v: f(v) - 200, 3.5, 4.5, xtol=1e-3)
