@@ -121,7 +121,7 @@ const sf_frame_field_info *sf_frame_field_get(sf_frame_field field);
     X(contact_nodes, "1", "contact_nodes_1", 1, "points in contact with the missile, modelled part", "")               \
     X(anvil_nodes, "1", "anvil_nodes_1", 1, "points of a resting pad that the anvil presses, modelled part", "")        \
     X(contact_area, "m2", "contact_area_mm2", 1e6, "undeformed area of the surface that belongs to these points", "whole pad") \
-    X(penetration, "m", "penetration_mm", 1e3, "deepest penetration of a point", "after the step")                     \
+    X(penetration, "m", "penetration_mm", 1e3, "deepest penetration of a point in a pair", "after the step")           \
     X(constraint_residual, "m s-1", "constraint_residual_m_s", 1, "largest |G v|, measured every 16 steps", "")        \
     X(time_step, "s", "time_step_us", 1e6, "step that follows", "")
 /* clang-format on */

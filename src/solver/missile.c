@@ -459,12 +459,6 @@ double sf_missile_gravity_work(const sf_model *m, const sf_missile *missile) {
     return sf_missile_weight(m) * missile->displacement;
 }
 
-double sf_missile_work(const sf_model *m, const sf_missile *missile, const double x[3],
-                       const double force[3]) {
-    (void)x;
-    return sf_missile_along(m, force) * (missile->displacement - missile->displacement_old);
-}
-
 double sf_missile_reading(const sf_model *m, const sf_missile *missile) {
     return 0 - mobility(m) * sf_missile_along(m, missile->force); /* not -0 */
 }

@@ -155,9 +155,6 @@ void sf_missile_momenta(const sf_model *model, const sf_missile *missile, double
 void sf_missile_outside(const sf_model *model, const sf_missile *missile, double force[3], double moment[3]);
 /* Work (J) of gravity since t = 0. */
 double sf_missile_gravity_work(const sf_model *model, const sf_missile *missile);
-/* Work (J), in the last step, of a force (N) at the missile's material point at x. */
-double sf_missile_work(const sf_model *model, const sf_missile *missile, const double x[3],
-                       const double force[3]);
 /* Specific force (m s-2) against the direction, the force of the pad over the mass: the reading of an
  * accelerometer in the missile, 0 in free flight. 0 of a driven missile. */
 double sf_missile_reading(const sf_model *model, const sf_missile *missile);

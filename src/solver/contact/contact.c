@@ -75,8 +75,8 @@ static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf
 
 /* ---- warm start ---- */
 
-/* The pair of a point in the last step; normal and lean are those of the present: the work that they tell of
- * the last forces has an error of the order of their change. */
+/* The pair of a point in the last step. Normal and lean of the skin are those of the present: the work that
+ * they tell of the last forces has an error of the order of their change. */
 static sf_contact_pair last_pair(const sf_scene *c, int64_t p, int64_t partner) {
     const double *x = &c->at->position[3 * p];
     sf_contact_pair q = {.node = p,
@@ -139,8 +139,10 @@ static void find_pair(const sf_scene *c, int64_t p, sf_contact_system *w, sf_con
         for (int r = 0; r < 3 && last != found->facet && found->friction == 0; r++)
             q[r] = old * found->normal[r];
     }
-    if (!sf_pair_acts(c, found))
+    if (!sf_pair_acts(c, found)) { /* it may have had a force from another partner */
+        memset(q, 0, 3 * sizeof *q);
         return;
+    }
     add_pair(c, w);
     if (p >= c->skin->nodes) {
         w->over = OVER;
@@ -202,8 +204,9 @@ static void load_points(const sf_contact_pair *pair, sf_contact_points *at) {
     }
 }
 
-/* Forces of the pairs on coefficients and bodies, and their work; those from `edges` on are no points. */
-static void store(const sf_scene *c, const sf_contact_system *w, int64_t edges) {
+/* Forces of the pairs on coefficients and bodies, and their work; the first `points` are those of points, the
+ * others of edges. */
+static void store(const sf_scene *c, const sf_contact_system *w, int64_t points) {
     bool loads = c->response && c->skin->faces > 0;
     if (loads)
         memset(c->at->load, 0, 3 * (size_t)c->skin->count * sizeof *c->at->load);
@@ -216,7 +219,7 @@ static void store(const sf_scene *c, const sf_contact_system *w, int64_t edges) 
         if (loads)
             load_points(pair, c->at);
         sf_ledger_book(c, pair, false);
-        if (a >= edges)
+        if (a >= points)
             sf_ledger_book_ahead(c, w, pair);
     }
 }

@@ -59,7 +59,8 @@ static void try_partner(search *t, const sf_shape *shape, int64_t partner) {
     }
     if (!q.missile)
         sf_pair_relative(&q, c->at->step, q.step);
-    double back = sf_pair_acts(c, &q) ? fmax(q.gap, -shape->back * c->state->dt) : q.gap;
+    bool slowly = !c->response && sf_pair_acts(c, &q); /* missile and resting base take back all of it */
+    double back = slowly ? fmax(q.gap, -shape->back * c->state->dt) : q.gap;
     if (back + sf_dot3(q.step, q.normal) >= 0)
         return;
     t->nearest = fabs(q.gap);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shapes and bodies. All that a point of the pad may touch is a body of one of them: the missile is a sphere
  * cap or a surface of triangles, the anvil and the symmetry planes are planes, supports, other layers and the
- * pad itself are faces. The row of a shape says which points are candidates, and how
- * gap and normal are found. */
+ * pad itself are faces. The row of a shape says which points are near, and how gap and
+ * normal are found; the lists of points near a face are those of the whole skin (contact/broad.c). */
 #pragma once
 #include "model/model.h"
 
@@ -40,8 +40,8 @@ typedef struct sf_shape {
     bool (*gap)(const void *data, const double x[3], double *gap, double normal[3]);
     /* Finds the pair of a point and a partner; false: they do not face each other. */
     bool (*meet)(const sf_scene *scene, int64_t point, int64_t partner, sf_contact_pair *out);
-    double entry, deepest; /* of the spacing: no pair that is new, and none that goes on, is deeper */
-    double back;           /* m s-1: no faster is a depth taken back */
+    double entry, deepest; /* of the spacing: deepest gap of a pair that is new, and of one that goes on */
+    double back;           /* m s-1, at which a depth of the skin is taken back at most */
 } sf_shape;
 
 /* The table. A new row is a file and its line here; that of a missile has a place in the list of shapes.c. */

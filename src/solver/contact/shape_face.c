@@ -7,7 +7,7 @@ static const double OPPOSED = -0.5; /* largest cosine of the normals of a node a
 static const double EDGE = 0.05;    /* of a face, in its barycentric coordinates: it reaches so far beyond */
 /* Faces are too far for this step beyond SPREAD times the largest motion of a point, as weights may be below
  * zero by EDGE, and for quadrangles WARP spacings more, by which both cuts may differ. */
-static const double SPREAD = 2.5, WARP = 0.5;
+static const double SPREAD = 3, WARP = 0.5;
 
 static double *side_normal(const sf_scene *c, int64_t f, int corner) {
     return &c->at->side[3 * (int64_t)c->skin->side[3 * f + corner]];
@@ -132,7 +132,8 @@ static bool meet(const sf_scene *c, int64_t p, int64_t f, sf_contact_pair *q) {
     sf_triangle_normal(corner[0], corner[1], corner[2], own);
     sf_sub3(x, corner[0], arm);
     double area = sqrt(sf_dot3(own, own)),
-           reach = SPREAD * c->at->travel + (skin->half[f] ? WARP * skin->size[p] : 0);
+           reach =
+               SPREAD * c->at->travel + (skin->half[f] ? WARP * fmax(skin->size[p], skin->size[n[0]]) : 0);
     if (sf_dot3(arm, own) > reach * area)
         return false;
     bool alone = skin->next_side[p] >= 0 || sf_skin_is_rigid(skin, p) || sf_skin_is_rigid(skin, n[0]);

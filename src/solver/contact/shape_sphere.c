@@ -38,4 +38,10 @@ static bool gap(const void *data, const double x[3], double *gap, double normal[
     return true;
 }
 
-const sf_shape sf_shape_sphere = {build, free, is_near, gap, sf_pair_missile, 0.1, INFINITY, INFINITY};
+const sf_shape sf_shape_sphere = {.build = build,
+                                  .release = free,
+                                  .is_near = is_near,
+                                  .gap = gap,
+                                  .meet = sf_pair_missile,
+                                  .entry = 0.1,
+                                  .deepest = INFINITY};

@@ -165,4 +165,10 @@ static bool is_near(const void *data, const double x[3], double margin) {
     return true;
 }
 
-const sf_shape sf_shape_surface = {build, release, is_near, gap, sf_pair_missile, 0.1, INFINITY, INFINITY};
+const sf_shape sf_shape_surface = {.build = build,
+                                   .release = release,
+                                   .is_near = is_near,
+                                   .gap = gap,
+                                   .meet = sf_pair_missile,
+                                   .entry = 0.1,
+                                   .deepest = INFINITY};

@@ -49,6 +49,23 @@ static sf_status write_state(const sf_model *m, const sf_state *s, sf_h5 *file, 
     return err->status;
 }
 
+/* True if the model has what a point of the skin touches: nothing, a facet, the anvil or a symmetry plane. */
+static bool is_partner(const sf_model *m, int64_t partner) {
+    double place;
+    switch (SF_FIRST_BODY - partner) {
+    case SF_FIRST_BODY - SF_NO_PARTNER:
+        return true;
+    case SF_BODY_ANVIL:
+        return m->anvil.depth > 0;
+    case SF_BODY_SYMMETRY_X:
+        return sf_symmetry_plane(m, 0, &place);
+    case SF_BODY_SYMMETRY_Y:
+        return sf_symmetry_plane(m, 1, &place);
+    default:
+        return partner >= 0 && partner < m->skin_count + m->support_triangle_count;
+    }
+}
+
 /* Numbers that loops and indices depend on. */
 static sf_status check(const sf_model *m, const sf_state *s, sf_error *err) {
     if (s->step < 0 || s->measured_at < 0 || s->measured_at > s->step || s->jacobian_node < 0 ||
@@ -56,12 +73,12 @@ static sf_status check(const sf_model *m, const sf_state *s, sf_error *err) {
         return SF_FAIL(err, SF_ERR_IO,
                        "the checkpoint's state is not possible: step %lld, t = %g s, dt = %g s, node %lld",
                        (long long)s->step, s->time, s->dt, (long long)s->jacobian_node);
-    int64_t facets = m->skin_count + m->support_triangle_count;
     for (int64_t p = 0; p < sf_state_rows(m, 's'); p++)
-        if (s->skin.partner[p] >= facets || s->skin.partner[p] <= SF_FIRST_BODY - SF_BODY_MISSILE)
-            return SF_FAIL(err, SF_ERR_IO,
-                           "the checkpoint's state is not possible: point %lld touches facet %d of %lld",
-                           (long long)p, s->skin.partner[p], (long long)facets);
+        if (!is_partner(m, s->skin.partner[p]))
+            return SF_FAIL(
+                err, SF_ERR_IO,
+                "the checkpoint's state is not possible: point %lld touches facet or body %d, which is not there",
+                (long long)p, s->skin.partner[p]);
     return SF_OK;
 }
 
