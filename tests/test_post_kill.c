@@ -144,11 +144,8 @@ static void earlier_data_are_removed_and_other_files_are_not(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(killed_between_two_moves_it_leaves_a_pair),
         cmocka_unit_test(earlier_data_are_removed_and_other_files_are_not),
     };
-    const struct CMUnitTest slow[] = {
-        cmocka_unit_test(killed_between_two_moves_it_leaves_a_pair),
-    };
-    return check_slow() ? cmocka_run_group_tests(slow, program_group_example, program_group_tear_down)
-                        : cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
+    return cmocka_run_group_tests(tests, program_group_example, program_group_tear_down);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* geometry.spacing_factor: all spacings of a pad's geometry at once, also those that the case does not give.
  */
-#include "check.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 
@@ -83,11 +82,8 @@ static void spacings_that_cannot_be_doubled_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spacings_of_the_geometry_are_doubled_too),
         cmocka_unit_test(spacings_that_cannot_be_doubled_are_refused),
     };
-    const struct CMUnitTest slow[] = {
-        cmocka_unit_test(spacings_of_the_geometry_are_doubled_too),
-    };
-    return check_slow() ? cmocka_run_group_tests(slow, set_up, program_group_tear_down)
-                        : cmocka_run_group_tests(tests, set_up, program_group_tear_down);
+    return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }
