@@ -122,6 +122,8 @@ def run(options: argparse.Namespace, tell: Callable[[str], None] = say) -> int:
     for name in STALE:
         (folder / name).unlink(missing_ok=True)
     _print(s, tell)
+    for line in files.extrapolated(s):
+        tell(f"  beyond the data: {line}")
     for line in s.average.warnings() if s.average else []:
         tell(f"  less sure than it looks: {line}")
     for row in s.average.page()["predictions"] if s.average else []:

@@ -51,7 +51,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("fit")
     (folder / "start.csv").write_text((ROOT / "examples/fit/eva35_start.csv").read_text())
     (folder / "start.cfg").write_text(START)
-    for name, speed in (("slow", "3.0"), ("fast", "4.0"), ("other", "3.5")):
+    for name, speed in (("slow", "3.0"), ("fast", "4.0"), ("other", "3.5"), ("hard", "4.5")):
         (folder / f"{name}.cfg").write_text(case_text(speed))
     form = library.Form(str(folder / "start.cfg"), "table", 0.0)
     values = form.start({"stress_scale": TRUE_SCALE, "HU": TRUE_HU}, [])
@@ -64,7 +64,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
     measured = "".join(f'{{ name = "{name}"; case = "{name}.cfg"; a_max_g = {truth[name]["a_max_g"]:.6g}; HIC = {truth[name]["hic"]:.6g}; v_rebound_m_s = '
                        f'{truth[name]["v_rebound_m_s"]:.6g}; }},' for name in ("slow", "fast"))
     (folder / "fit.cfg").write_text(f'name = "found"; material = "start.cfg"; curve_form = "table"; posterior = false;\nunknown = ( {{ name = "stress_scale"; }}, {{ name = "HU"; prior_sd = 1.0; }} );\n'
-                                    f'drops = ( {measured[:-1]} );\npredict = ( {{ name = "other"; case = "other.cfg"; }} );\n')
+                                    f'drops = ( {measured[:-1]} );\npredict = ( {{ name = "other"; case = "other.cfg"; }}, {{ name = "hard"; case = "hard.cfg"; }} );\n')
     return folder
 
 
@@ -98,6 +98,8 @@ def test_files_of_a_fit(lab: Path, found: dict[str, Any]) -> None:
     text, page = (lab / "out/found.cfg").read_text(), (lab / "out/report.html").read_text()
     assert "stress_scale = 1.1" in text or "stress_scale = 1.2" in text
     assert "informed_strain" in text and "Predictions by simulation" in page and "converged" in page and (lab / "out/fit.png").stat().st_size > 10000
+    beyond, = found["extrapolated"]  # the harder drop alone strains the foam more than those of the fit
+    assert beyond.startswith("hard strains the foam to 0.") and page.count("beyond the data") == 1 and found["drops"][3]["max_local_strain"] > found["drops"][1]["max_local_strain"]
     with open(lab / "out/fit-curve.csv", newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert len(rows) == 19 and all(float(row["low95_kPa"]) < float(row["stress_kPa"]) < float(row["high95_kPa"]) for row in rows)
@@ -255,7 +257,7 @@ def test_a_posterior_needs_no_drops(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     ("mkdir posterior; sed s:start.cfg:../start.cfg: slow.cfg > posterior/draw-001.cfg; sed -i s:slow.cfg:posterior/draw-001.cfg: fit.cfg", "would replace an input"),
     ("echo mine > report.html", "is not of softfall, and is not replaced"), ("ln -s /dev/null found.cfg", "it is no plain file"), ("mkdir fit.json", "it is a folder")])
 def test_no_input_and_no_file_of_somebody_else_is_replaced(lab: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: str, said: str) -> None:
-    for name in ("fit.cfg", "start.cfg", "start.csv", "slow.cfg", "fast.cfg", "other.cfg"):
+    for name in ("fit.cfg", "start.cfg", "start.csv", "slow.cfg", "fast.cfg", "other.cfg", "hard.cfg"):
         (tmp_path / name).write_bytes((lab / name).read_bytes())
     monkeypatch.chdir(tmp_path)
     subprocess.run(["sh", "-c", made], cwd=tmp_path, check=True)

@@ -13,7 +13,7 @@ from ..library import GRADES
 from ..sweep_page import PLAIN
 from ..template import base64_of, png, render
 from .drops import GRID
-from .files import Study, chain_lines, tests_of
+from .files import Study, chain_lines, extrapolated, tests_of
 from .input import KINDS
 
 
@@ -126,7 +126,7 @@ def context(s: Study) -> dict[str, Any]:
     rows = [[drop.name, kind.heading, *(percent(v, 3).removesuffix(" %") for v in row[:len(unknown)])]
             for d, drop in enumerate(s.given.drops) if d in fit.slope for kind, row in zip(KINDS, fit.slope[d]) if kind.always]
     return {"kind": "bad" if not fit.converged else "fair" if fit.scale > 1 or fit.on_bounds else "good", "state": "converged" if fit.converged else "not converged", "end": end(s),
-            "informed": s.informed, "measured": measured, "predicted": predicted, "parameters": parameters, "names": [u.name for u in unknown],
+            "informed": s.informed, "extrapolated": extrapolated(s), "measured": measured, "predicted": predicted, "parameters": parameters, "names": [u.name for u in unknown],
             "correlation": [[u.name, *(f"{v:+.2f}" for v in row[:len(unknown)])] for u, row in zip(unknown, correlation)], "sensitivities": rows, "speeds": speeds, "tests": tests,
             "blocks": blocks, "chain": chain_lines(s), "formula": form.formula, "average": s.average.page() if s.average else None,
             "failed": [[m.label, why] for m, why in zip(s.given.models, s.failures) if why], "model": fit.problem.model.label}
