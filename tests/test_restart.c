@@ -3,6 +3,7 @@
  * and the bits are those of one run. Under SF_SLOW=1 one run is killed sixty times. */
 #include "check.h"
 #include "io/h5_data.h"
+#include "solver/contact/shape.h"
 #include "model_fixture.h"
 #include "program_fixture.h"
 #include "run_fixture.h"
@@ -415,6 +416,37 @@ static void nothing_is_replaced_without_force(void **state) {
     assert_non_null(strstr(busy.err, "another softfall-solve is writing busy.h5"));
 }
 
+/* A whole pad has no symmetry plane that a point of its skin could touch. */
+static void partner_that_is_not_there_is_refused(void **state) {
+    const program_place *p = *state;
+    sf_error err = SF_ERROR_INIT;
+    program_succeed(p, "pre",
+                    "'%s' -o whole.h5 %s --set geometry.parameters.quarter=0 --set "
+                    "geometry.missile_parameters.quarter=0 --set pad.self_contact='\"on\"'",
+                    fixture_source(EXAMPLE), program_coarse(25));
+    program_succeed(p, "solve", "whole.h5 -o whole_part.h5 --end-time '1 ms' --threads 1");
+    const char *path = program_path(p, "whole_part.h5.restart");
+    program_bytes good = program_read_file(path);
+    program_write_file(path, good.data, good.size - 24); /* without its seal */
+    free(good.data);
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT),
+          data = H5Dopen(file, "/state/skin.partner", H5P_DEFAULT);
+    hid_t space = H5Dget_space(data);
+    hssize_t count = H5Sget_simple_extent_npoints(space);
+    int32_t *partner = calloc((size_t)count, sizeof *partner);
+    assert_true(count > 0 && partner);
+    partner[0] = SF_FIRST_BODY - SF_BODY_SYMMETRY_X;
+    assert_true(H5Dwrite(data, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, partner) >= 0);
+    free(partner);
+    H5Sclose(space);
+    H5Dclose(data);
+    H5Fclose(file);
+    assert_int_equal(sf_seal_add(path, &err), SF_OK);
+    program_result r = program_run(p, "solve", "--restart whole_part.h5 --end-time '2 ms'");
+    assert_int_equal(r.code, SF_ERR_IO);
+    assert_non_null(strstr(r.err, "touches facet or body -3, which is not there"));
+}
+
 /* ---- the model during a run ---- */
 
 /* A run of `model`, as its own copy during.h5, that stands still after its third frame. */
@@ -606,6 +638,7 @@ int main(void) {
         cmocka_unit_test(checkpoints_by_simulated_time_can_be_left_out),
         cmocka_unit_test(restart_takes_the_peak_of_its_checkpoint),
         cmocka_unit_test(damaged_or_foreign_checkpoint_is_refused),
+        cmocka_unit_test(partner_that_is_not_there_is_refused),
         cmocka_unit_test(nothing_is_replaced_without_force),
         cmocka_unit_test(model_that_cannot_be_built_costs_nothing),
     };
