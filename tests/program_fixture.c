@@ -139,8 +139,6 @@ program_result program_succeed(const program_place *place, const char *name, con
     va_start(args, format);
     program_command(command, "", name, format, args);
     va_end(args);
-    if (strcmp(name, "pre") == 0) /* one mesh for each geometry of the place */
-        strncat(command, " --share .meshes", COMMAND_SIZE - strlen(command) - 1);
     return succeed(place, command);
 }
 

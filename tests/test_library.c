@@ -337,6 +337,7 @@ static void meshes_are_shared(void **state) {
     softfall_error error;
     char folder[4096];
     snprintf(folder, sizeof folder, "%s", program_path(&p->folder, "shared"));
+    unsetenv("SOFTFALL_SHARE"); /* which would stand before it */
     for (int k = 0; k < 2; k++) {
         assert_int_equal(softfall_case_read(fixture_source(EXAMPLE), coarse, COARSE, NULL, &c, &error),
                          SOFTFALL_OK);

@@ -28,6 +28,7 @@ static int set_up(void **state) {
                       source, source, bin, p->folder, bin)
             .code;
     setenv("SF_BIN_DIR", program_path(p, "bin"), 1);
+    unsetenv("SOFTFALL_SHARE");
     return code;
 }
 
@@ -125,11 +126,29 @@ static void a_damaged_store_counts_as_none(void **state) {
     assert_string_equal(program_shell(p, "ls -A taken").out, "file\n");
 }
 
+static void a_folder_for_all_programs_stands_before_their_own(void **state) {
+    const program_place *p = *state;
+    setenv("SOFTFALL_SHARE", program_path(p, "all"), 1);
+    assert_int_equal(count_meshes(p, "m.h5", "", ""), 2);
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", ""), 0);
+    assert_int_equal(count_meshes(p, "m.h5", "", ""), 0);
+    unsetenv("SOFTFALL_SHARE");
+}
+
+static void a_full_store_is_emptied(void **state) {
+    const program_place *p = *state;
+    program_shell(p, "truncate -s 1G shared/mesh-0123456789abcdef.bin");
+    assert_int_equal(count_meshes(p, "m.h5", "--share shared", "--set geometry.parameters.side=52"), 2);
+    assert_string_equal(program_shell(p, "ls shared | grep -c -e mesh -e domains").out, "3\n");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(another_foam_or_speed_does_not_mesh_again),
         cmocka_unit_test(what_differs_is_made_anew),
         cmocka_unit_test(a_damaged_store_counts_as_none),
+        cmocka_unit_test(a_folder_for_all_programs_stands_before_their_own),
+        cmocka_unit_test(a_full_store_is_emptied),
     };
     return cmocka_run_group_tests(tests, set_up, program_group_tear_down);
 }

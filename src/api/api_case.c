@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "base/units.h"
 #include "case/read.h"
+#include "io/folder.h"
 #include "io/h5_data.h"
 #include "io/plain_file.h"
 #include "pre/make.h"
@@ -112,6 +113,7 @@ softfall_status softfall_case_check(const softfall_case *c, softfall_error *erro
 softfall_status softfall_case_set_build(softfall_case *c, const char *share, int section,
                                         softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
+    share = sf_store_folder(share);
     free(c->store);
     c->store = share ? strdup(share) : NULL;
     c->data.store = c->store;

@@ -231,6 +231,21 @@ static char *join(int count, const sf_store_part *part, size_t *size) {
     return all;
 }
 
+const char *sf_store_folder(const char *given) {
+    const char *set = getenv("SOFTFALL_SHARE");
+    return set && *set ? set : given;
+}
+
+static void empty_store(int handle) {
+    DIR *list = list_folder(handle);
+    struct dirent *entry;
+    while (list && (entry = readdir(list)) != NULL)
+        if (strcmp(entry->d_name + strcspn(entry->d_name, "."), ".bin") == 0)
+            unlinkat(handle, entry->d_name, 0);
+    if (list)
+        closedir(list);
+}
+
 void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count, const sf_store_part *part) {
     char path[SF_PATH_SIZE];
     sf_error none = SF_ERROR_INIT;
@@ -241,9 +256,10 @@ void sf_store_keep(const char *folder, const char *kind, uint64_t key, int count
     uint64_t bytes;
     SF_OWNED char *all = join(count, part, &size);
     int handle = sf_folder_open(folder);
-    count_names(handle, "", &bytes);
+    if (handle >= 0 && count_names(handle, "", &bytes) > 0 && bytes + size > SF_STORE_MOST)
+        empty_store(handle);
     close(handle);
-    if (all && bytes + size <= SF_STORE_MOST && sf_replace_open(path, &file, &none)) {
+    if (all && size <= SF_STORE_MOST && sf_replace_open(path, &file, &none)) {
         head h = {.key = key, .size = size, .hash = sf_hash(SF_HASH_START, all, size)};
         memcpy(h.magic, MAGIC, sizeof MAGIC);
         fwrite(&h, sizeof h, 1, file.file);

@@ -40,7 +40,10 @@ int64_t sf_folder_count(const char *path, const char *prefix);
  * damaged or of another key counts as absent, and one that cannot be kept is not: the store saves time, and
  * nothing else. */
 
-/* Beyond this many bytes in the folder nothing more is kept. */
+/* The folder of SOFTFALL_SHARE if that is set, or else the given one. */
+const char *sf_store_folder(const char *given);
+
+/* Before the files would take more bytes than this, all are removed. */
 #define SF_STORE_MOST (UINT64_C(1) << 30)
 
 typedef struct sf_store_part {

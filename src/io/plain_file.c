@@ -324,8 +324,8 @@ sf_status sf_plain_hash_kept(const char *path, uint64_t *hash, sf_error *err) {
     if (there && find_kept(path, &before, hash))
         return SF_OK;
     bool settled = there && is_settled(&before);
-    if (sf_plain_hash(path, NULL, SF_PLAIN_ANY, hash, err) == SF_OK && settled && stat(path, &after) == 0 &&
-        is_unchanged(&before, &after))
+    if (sf_plain_hash(path, NULL, SF_PLAIN_GEOMETRY, hash, err) == SF_OK && settled &&
+        stat(path, &after) == 0 && is_unchanged(&before, &after))
         keep(path, &before, *hash);
     return err->status;
 }

@@ -21,6 +21,8 @@
 /* Largest text that somebody would write or measure, in bytes. */
 #define SF_PLAIN_TEXT (UINT64_C(1) << 28)
 #define SF_PLAIN_ANY UINT64_MAX
+/* Far beyond a geometry whose mesh has room in a machine. */
+#define SF_PLAIN_GEOMETRY (UINT64_C(1) << 32)
 
 /* The whole content, at most `largest` bytes. `*text` ends with a zero byte that `*size` does not count; from
  * malloc, owned by the caller, NULL on failure. `size` may be NULL. Registered. */
@@ -30,10 +32,10 @@ sf_status sf_plain_read(const char *path, const char *what, uint64_t largest, ch
 /* The same without the content: only its hash (sf_hash_bytes from SF_HASH_START). */
 sf_status sf_plain_hash(const char *path, const char *what, uint64_t largest, uint64_t *hash, sf_error *err);
 
-/* The same of a file of any size, for files that are asked for again and again: it is not read again while it
- * is the same file (device, inode, size, times of its modification and of its last change) as when this
- * function read it, unless it had been changed within the second before, which the clock of a file system may
- * not tell from another change. */
+/* The same of a geometry, or of a file that one reads, which are asked for again and again: it is not read
+ * again while it is the same file (device, inode, size, times of its modification and of its last change) as
+ * when this function read it, unless it had been changed within the second before, which the clock of a file
+ * system may not tell from another change. */
 sf_status sf_plain_hash_kept(const char *path, uint64_t *hash, sf_error *err);
 
 /* Opens for reading (O_CLOEXEC), for a reader that needs the descriptor. `*handle` is owned by the caller

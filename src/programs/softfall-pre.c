@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "case/read.h"
 #include "case/values.h"
+#include "io/folder.h"
 #include "io/h5_data.h"
 #include "io/replace.h"
 #include "model/model_check.h"
@@ -37,7 +38,7 @@ static const sf_option list[] = {
     {"force", 'f', NULL, "replace an existing model file", .member = offsetof(options, force)},
     {"share", 0, "DIR",
      "take the mesh and the smoothing domains from this folder if an earlier drop of the same geometry and "
-     "kernel left them there, and leave them there",
+     "kernel left them there, and leave them there; SOFTFALL_SHARE=DIR names one for all programs",
      .member = offsetof(options, store)},
     {"keys", 0, NULL, "list every key of a case file and end", .member = offsetof(options, keys)},
     {0},
@@ -110,7 +111,7 @@ static int64_t build(const options *o, const char *command, int drop, sf_error *
         return 0;
     for (int k = 1; drop == 1 && k < c.drops && err->status == SF_OK; k++)
         own[k] = c.drop[k].own ? build(o, command, k + 1, err) : 0;
-    c.store = o->store;
+    c.store = sf_store_folder(o->store);
     c.drops = drop == 1 ? c.drops : 1;
     if (err->status != SF_OK || sf_replace_check(output, err) != SF_OK || /* not one of what the case names */
         sf_model_make(&c, &model, &report, libraries, drop == 1 && !o->estimate ? &sections : NULL, &sink,

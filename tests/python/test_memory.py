@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -67,6 +69,24 @@ def test_a_later_drop_without_keys_of_its_own_has_the_first_missile(tmp_path: Pa
 
 def test_the_programs_are_part_of_the_key() -> None:
     assert len(memory.programs_hash()) == 16 and (programs.folder() / "softfall-mesh").exists()
+
+
+def test_another_library_takes_no_domains_of_the_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python is the program of both, and a newer library may make other domains of the same mesh."""
+    monkeypatch.delenv("SOFTFALL_SHARE", raising=False)
+    case, shared = str(EXAMPLES / "eva50-axisymmetric/case.cfg"), tmp_path / "shared"
+    for part in ("bin", "lib"):
+        shutil.copytree(programs.folder().parent / part, tmp_path / "copy" / part, symlinks=True)
+    monkeypatch.setenv("SF_BIN_DIR", str(tmp_path / "copy/bin"))
+    text = f"from softfall import memory\nwith memory.Inputs({case!r}, {COARSE!r}) as drop: drop.run({str(shared)!r})"
+    made = []
+    for _ in range(3):
+        subprocess.run([sys.executable, "-c", text], check=True)
+        made.append(len(list(shared.glob("domains-*"))))
+        if len(made) == 2:
+            with open(tmp_path / "copy/lib/libsoftfall-build.so", "ab") as library_file:
+                library_file.write(b"another")
+    assert made == [1, 1, 2]
 
 
 def test_what_the_solver_notes_of_a_foam_is_part_of_the_verdict(tmp_path: Path) -> None:

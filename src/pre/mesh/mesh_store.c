@@ -84,7 +84,7 @@ static bool find_key(const sf_geo_source *source, uint64_t *key) {
     sf_error none = SF_ERROR_INIT;
     if (sf_mesher_find(mesher, sizeof mesher, &none) != SF_OK ||
         sf_plain_hash(mesher, NULL, SF_PLAIN_ANY, &content[0], &none) != SF_OK ||
-        sf_plain_hash(source->path, NULL, SF_PLAIN_ANY, &content[1], &none) != SF_OK)
+        sf_plain_hash(source->path, NULL, SF_PLAIN_GEOMETRY, &content[1], &none) != SF_OK)
         return false;
     const char *name = sf_path_name(source->path);
     *key = sf_hash_bytes(SF_HASH_START, content, sizeof content);
