@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A coarse case in a folder of its own, and its drop."""
+import base64
 import contextlib
 import io
 import os
@@ -21,6 +22,7 @@ BIN = pathlib.Path(os.environ["SF_BIN_DIR"])
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: takes long; runs under SF_SLOW=1, in the entry NAME_slow of ctest")
+    config.addinivalue_line("markers", "drawn: looks at pictures, which are blank in the other tests that run in this process")
 
 
 def pytest_collection_modifyitems(config, items):
@@ -71,6 +73,23 @@ def here(place, monkeypatch):
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", category=softfall.SoftfallWarning)
         yield place
+
+
+BLANK = {"png": base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="),
+         "svg": b'<svg xmlns="http://www.w3.org/2000/svg" width="1" height="1"></svg>'}
+
+
+@pytest.fixture(autouse=True)
+def blank(request, monkeypatch):
+    """Pages have blank pictures, as drawing them takes longer than a drop, but in tests that are marked as drawn."""
+    def save(figure, target, format=None, **_):
+        data = BLANK[format or pathlib.Path(target).suffix[1:]]
+        if isinstance(target, (str, os.PathLike)):
+            pathlib.Path(target).write_bytes(data)
+        else:
+            target.write(data.decode() if isinstance(target, io.TextIOBase) else data)
+    if not request.node.get_closest_marker("drawn"):
+        monkeypatch.setattr("matplotlib.figure.Figure.savefig", save)
 
 
 @pytest.fixture

@@ -389,6 +389,7 @@ def test_files_that_are_there_are_kept(tmp_path):
     assert command("convert", path)[0] == 2 and command("convert", tmp_path / "none.k", "-o", out)[0] == 2 and command("frobnicate")[0] == 64
 
 
+@pytest.mark.drawn
 def test_foams_are_listed_shown_and_drawn(tmp_path):
     code, out, _ = command("list")
     assert code == 0 and all(name in out for name in foams()) and "Landauer" in out

@@ -123,6 +123,7 @@ def test_ends_of_the_range_and_figures_that_fall() -> None:
 
 # ---- drops
 
+@pytest.mark.drawn
 def test_the_height_is_that_whose_own_drop_reaches_the_limit(tmp_path: Path) -> None:
     said = run(CASE, "-o", tmp_path / "out", *SET, "-j", 2)
     made = summary(tmp_path / "out")

@@ -109,6 +109,7 @@ def test_an_output_is_no_input_however_it_is_spelled(tmp_path):
     assert (tmp_path / "eva35.csv").read_bytes() == before
 
 
+@pytest.mark.drawn
 def test_a_name_with_a_dollar_is_no_formula(tmp_path):
     shutil.copy(SOURCE / "examples/materials/eva35.csv", tmp_path)
     (tmp_path / "d.cfg").write_text("# $x_{$ foam\n" + (SOURCE / "examples/materials/eva35.cfg").read_text())

@@ -65,6 +65,7 @@ def test_frames_have_positions_and_stress(drop):
         drop.data("modell/position")
 
 
+@pytest.mark.drawn
 def test_plot_shows_the_curve_and_the_window(drop, tmp_path):
     ax = drop.plot()
     time, curve = drop.curve()

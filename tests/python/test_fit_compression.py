@@ -174,6 +174,7 @@ def test_bad_input_gets_one_sentence(lab: Path, text: str, sentence: str) -> Non
 
 # ---- the command
 
+@pytest.mark.drawn
 def test_files_are_written_and_weak_results_marked(lab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(lab)
     Path("fit.cfg").write_text('density = "35 kg/m3"; curve_form = "gas"; rate_model = "factor"; name = "foam of a test";\ntests = ( { file = "t.csv"; rate = "0.01 1/s"; },\n'
@@ -336,6 +337,7 @@ def test_a_known_hyperfoam_is_found_from_one_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.drawn
 def test_vn600_as_a_hyperfoam(tmp_path: Path) -> None:
     slow = hyperfoam_fit.run(compression.read(str(ROOT / "examples/fit/hyperfoam/vn600_quasistatic.cfg")))
     assert 0.23 < slow.poisson[0] < 0.26 and 0.155 < slow.poisson[1] < 0.175 and slow.is_good

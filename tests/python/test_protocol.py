@@ -526,6 +526,7 @@ def test_results_at_the_ends_are_bounds(tmp_path):
 COARSE = ["--set", "missile.mass=4.6 kg", "-j", "1"]
 
 
+@pytest.mark.drawn
 def test_a_pad_is_simulated_measured_and_compared(case, drop, tmp_path):
     """Measured records are the curves of the simulation: the two agree to the last digits of the file."""
     text = (protocol.folder() / "own.toml").read_text().replace(', { name = "edge", at = ["150 mm", "0 mm"] }', "")

@@ -19,6 +19,8 @@ from softfall import report
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
+pytestmark = pytest.mark.drawn
+
 
 def shown(folder):
     """Returns the text of a page, which is well-formed and has nothing to load or to run."""

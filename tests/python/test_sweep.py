@@ -72,6 +72,7 @@ def _of_programs(key: str) -> bool:
     return not re.search(r"mesh|scatter|change|wall_s|threads|frames|below_anvil", key)
 
 
+@pytest.mark.drawn
 def test_rows_are_those_of_the_programs_and_are_found_again(tmp_path: Path) -> None:
     foams = f'{{ key = "material"; name = "foam"; uncertain = true; files = ["{EXAMPLES}/materials/eva35.cfg", "{EXAMPLES}/materials/leap.cfg"]; }}'
     path = write_plan(tmp_path, f'{{ key = "missile.velocity"; name = "speed"; values = ["3 m/s", "30 m/s"]; }}, {foams}')
