@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "program_fixture.h"
 
+#include "io/plain_file.h"
+
+#include <fts.h>
+#include <inttypes.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <cmocka.h>
@@ -86,7 +91,7 @@ static void read_text(const char *path, char *text, size_t size) {
 static program_result run_command(const program_place *place, const char *command) {
     program_result result = {.code = -1};
     char line[COMMAND_SIZE + 1200];
-    snprintf(line, sizeof line, "cd '%s' && ( %s ) > .stdout 2> .stderr", place->folder, command);
+    snprintf(line, sizeof line, "cd '%s' && { %s\n} > .stdout 2> .stderr", place->folder, command);
     int status = system(line);
     result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     read_text(program_path(place, ".stdout"), result.out, sizeof result.out);
@@ -173,6 +178,33 @@ program_bytes program_read_file(const char *path) {
     bytes.data[bytes.size] = '\0';
     fclose(file);
     return bytes;
+}
+
+static int by_name(const FTSENT **a, const FTSENT **b) {
+    return strcmp((*a)->fts_name, (*b)->fts_name);
+}
+
+char *program_list_files(const program_place *place) {
+    char *text = NULL, *const root[] = {(char *)place->folder, NULL};
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    FTS *tree = fts_open(root, FTS_PHYSICAL | FTS_NOCHDIR, by_name);
+    for (FTSENT *e; (e = fts_read(tree)) != NULL;) {
+        if (e->fts_info == FTS_DP || strncmp(e->fts_name, ".std", 4) == 0)
+            continue;
+        char target[PATH_MAX] = "";
+        uint64_t hash = 0;
+        sf_error err = SF_ERROR_INIT;
+        if (e->fts_info == FTS_SL && readlink(e->fts_path, target, sizeof target - 1) < 0)
+            fail_msg("cannot read the link %s", e->fts_path);
+        if (e->fts_info == FTS_F && sf_plain_hash(e->fts_path, NULL, SF_PLAIN_ANY, &hash, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        fprintf(out, "%s %o %s %016" PRIx64 "\n", e->fts_path, e->fts_statp->st_mode, target, hash);
+    }
+    fts_close(tree);
+    sf_plain_clear();
+    fclose(out);
+    return text;
 }
 
 double program_json_number(const char *json, const char *after, const char *key) {

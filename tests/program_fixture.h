@@ -64,6 +64,9 @@ const char *program_coarse(double spacing);
 /* folder/name of HDF5, open for reading. */
 sf_h5 *program_open_h5(const program_place *place, const char *name);
 program_bytes program_read_file(const char *path);
+/* Everything in the folder but what the shell printed: names, modes, targets of links and hashes of contents,
+ * a line each. Owned: free. */
+char *program_list_files(const program_place *place);
 void program_write_file(const char *path, const void *data, size_t size);
 /* Writes folder/name and returns its path, as program_path does. */
 const char *program_write_text(const program_place *place, const char *name, const char *text);

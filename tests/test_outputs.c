@@ -24,15 +24,6 @@ static int set_up(void **state) {
     return 0;
 }
 
-/* Names, kinds and contents of everything in the folder. */
-static char *list_all(const program_place *p) {
-    program_shell(
-        p,
-        "(find . ! -name '.std*' -printf '%%p %%y %%l\\n' | sort; find . -type f ! -name '.std*' | sort | xargs "
-        "-d '\\n' sha256sum) > .stdlist; mv .stdlist .stdlist2");
-    return program_read_file(program_path(p, ".stdlist2")).data;
-}
-
 typedef struct attempt {
     const char *before;          /* shell, to set the place */
     const char *program, *words; /* under test */
@@ -43,10 +34,10 @@ typedef struct attempt {
 static void assert_harmless(const program_place *p, const attempt *a) {
     if (a->before && program_shell(p, "%s", a->before).code != 0)
         fail_msg("cannot prepare: %s", a->before);
-    char *was = list_all(p);
+    char *was = program_list_files(p);
     program_result r = program_shell(p, "timeout -s KILL %d '%s/softfall-%s' %s", 100, getenv("SF_BIN_DIR"),
                                      a->program, a->words);
-    char *is = list_all(p);
+    char *is = program_list_files(p);
     const char *end = strchr(r.err, '\n');
     if (r.code == 0 || r.code >= 126 || strncmp(r.err, "softfall-", 9) != 0 || !end || end[1] != '\0' ||
         !strstr(r.err, a->sentence))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the tests of the Python package: run.py FILE [OPTION...]. Exit code 77 if a package of Debian is missing, except under SF_NO_SKIP=1."""
+"""Runs the tests of the Python package: run.py FILE... [OPTION...]. Exit code 77 if a package of Debian is missing, except under SF_NO_SKIP=1."""
 import importlib.util
 import os
 import subprocess
