@@ -91,7 +91,7 @@ static void read_text(const char *path, char *text, size_t size) {
 static program_result run_command(const program_place *place, const char *command) {
     program_result result = {.code = -1};
     char line[COMMAND_SIZE + 1200];
-    snprintf(line, sizeof line, "cd '%s' && { %s\n} > .stdout 2> .stderr", place->folder, command);
+    snprintf(line, sizeof line, "cd '%s' && ( %s ) > .stdout 2> .stderr", place->folder, command);
     int status = system(line);
     result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     read_text(program_path(place, ".stdout"), result.out, sizeof result.out);

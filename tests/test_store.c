@@ -84,7 +84,8 @@ static void another_foam_or_speed_does_not_mesh_again(void **state) {
     assert_int_equal(count_meshes(p, "first.h5", "--share shared", ""), 2);
     assert_int_equal(count_meshes(p, "second.h5", "--share shared", foam), 0);
     assert_same_model(p, "alone.h5", "second.h5");
-    assert_string_equal(program_shell(p, "ls shared | grep -c domains").out, "1\n");
+    assert_string_equal(program_shell(p, "ls shared | grep -c domains").out,
+                        "3\n"); /* and of two plane sections that are like the drop */
     /* The lists of what was read are those of a meshing too. */
     char *alone = files_read_for(p, "alone.h5"), *second = files_read_for(p, "second.h5");
     assert_true(*alone);
@@ -126,6 +127,29 @@ static void a_damaged_store_counts_as_none(void **state) {
     assert_string_equal(program_shell(p, "ls -A taken").out, "file\n");
 }
 
+static void drops_of_the_section_are_run_once(void **state) {
+    static const char *const share[] = {"", "--share sections", "--share sections"};
+    const program_place *p = *state;
+    sf_error err = SF_ERROR_INIT;
+    sf_model m[3];
+    for (int k = 0; k < 3; k++) {
+        program_succeed(p, "pre", "examples/eva50-v4.5/case.cfg -o m.h5 -f %s %s", program_coarse(20),
+                        share[k]);
+        assert_string_equal(program_shell(p, "ls sections 2>/dev/null | grep -c section-").out,
+                            k == 0 ? "0\n" : "4\n");
+        if (sf_model_read(program_path(p, "m.h5"), &m[k], NULL, &err) != SF_OK)
+            fail_msg("%s", err.text);
+        program_shell(p, "test ! -d sections || touch -d @0 sections/section-*");
+    }
+    assert_string_equal(program_shell(p, "find sections -name 'section-*' -newermt 2000-01-01").out, "");
+    assert_true(m[0].section.a_max_g > 0);
+    for (int k = 2; k >= 0; k--) {
+        assert_memory_equal(&m[k].section, &m[0].section, sizeof m[k].section);
+        assert_true(m[k].expected_mesh_error == m[0].expected_mesh_error);
+        sf_model_free(&m[k]);
+    }
+}
+
 static void a_folder_for_all_programs_stands_before_their_own(void **state) {
     const program_place *p = *state;
     setenv("SOFTFALL_SHARE", program_path(p, "all"), 1);
@@ -139,7 +163,7 @@ static void a_full_store_is_emptied(void **state) {
     const program_place *p = *state;
     program_shell(p, "truncate -s 1G shared/mesh-0123456789abcdef.bin");
     assert_int_equal(count_meshes(p, "m.h5", "--share shared", "--set geometry.parameters.side=52"), 2);
-    assert_string_equal(program_shell(p, "ls shared | grep -c -e mesh -e domains").out, "3\n");
+    assert_string_equal(program_shell(p, "ls shared | grep -c -e mesh -e domains").out, "5\n");
 }
 
 int main(void) {
@@ -147,6 +171,7 @@ int main(void) {
         cmocka_unit_test(another_foam_or_speed_does_not_mesh_again),
         cmocka_unit_test(what_differs_is_made_anew),
         cmocka_unit_test(a_damaged_store_counts_as_none),
+        cmocka_unit_test(drops_of_the_section_are_run_once),
         cmocka_unit_test(a_folder_for_all_programs_stands_before_their_own),
         cmocka_unit_test(a_full_store_is_emptied),
     };

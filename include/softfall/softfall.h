@@ -120,8 +120,9 @@ SOFTFALL_API int softfall_case_has_files(const softfall_case *c, const char *fil
  * process that reads very many. To be called once, while no other thread reads anything. */
 SOFTFALL_API softfall_status softfall_units_hold(softfall_error *error);
 
-/* Sets how softfall_model_build builds: `share`, a folder, or NULL: takes meshes and smoothing domains from
- * there where a case of the same geometry has left them, and leaves them there, also for other processes.
+/* Sets how softfall_model_build builds: `share`, a folder, or NULL: takes meshes, smoothing domains and
+ * what drops of the section told from there where a case of the same geometry has left them, and leaves them
+ * there, also for other processes.
  * `section` 1: runs the drops of its section, or of a plate like it, that tell the errors by its mesh, as
  * softfall-pre does.
  */

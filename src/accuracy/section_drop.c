@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "accuracy/section_drop.h"
 
+#include "base/hash.h"
 #include "base/mat3.h"
 #include "drop/drop.h"
+#include "io/folder.h"
 #include "model/good_run.h"
+#include "model/model_check.h"
 #include "pre/drop_check.h"
 #include "pre/vary.h"
 #include <omp.h>
@@ -21,7 +24,7 @@ static const double UNLIKE = 1.5;      /* on the error of a drop that is only li
 static const double LEAST[FIGURES] = {1.5e-3, 2e-4, 2e-4}; /* -: figures scatter as the mesh moves */
 
 /* One drop on one thread; its figures are NaN if it fails or does not rebound. */
-static void run(const sf_model *model, double figure[FIGURES]) {
+static void simulate(const sf_model *model, double figure[FIGURES]) {
     sf_drop drop;
     SF_OWNED_BY(sf_drop_results_free) sf_results results = {0};
     SF_OWNED_BY(sf_figures_free) sf_figures f = {0};
@@ -40,6 +43,28 @@ static void run(const sf_model *model, double figure[FIGURES]) {
         figure[INDENTATION] = f.max_indentation;
     }
     sf_drop_free(&drop);
+}
+
+/* The same from the store, which gets it if it is not there. */
+static void run(const sf_model *model, const char *store, double figure[FIGURES]) {
+    static const char KIND[] = "section";
+    const size_t size = FIGURES * sizeof *figure;
+    char hash[SF_MODEL_HASH_SIZE];
+    uint64_t key;
+    sf_stored found = {0};
+    bool known = store && sf_store_begin_key(&key);
+    if (known) {
+        sf_model_hash(model, hash);
+        key = sf_hash_bytes(key, hash, sizeof hash);
+    }
+    if (known && sf_store_find(store, KIND, key, &found) && found.size == size) {
+        memcpy(figure, found.data, size);
+    } else {
+        simulate(model, figure);
+        if (known)
+            sf_store_keep(store, KIND, key, 1, &(sf_store_part){figure, size});
+    }
+    free(found.block);
 }
 
 /* The value for ever finer meshes, and its doubt over it. */
@@ -75,15 +100,15 @@ static void make_thinner(const sf_kernel *kernel, sf_model *m) {
 }
 
 /* Side by side, each on one thread. */
-static void run_all(sf_model *const model[DROPS], double figure[DROPS][FIGURES]) {
+static void run_all(sf_model *const model[DROPS], const char *store, double figure[DROPS][FIGURES]) {
     for (int k = 0; k < DROPS; k++)
         if (model[k])
             model[k]->run.step_limit = fmax(model[k]->run.step_limit, STEP_LIMIT);
-#pragma omp parallel for schedule(dynamic, 1) default(none) shared(model, figure)
+#pragma omp parallel for schedule(dynamic, 1) default(none) shared(model, store, figure)
     for (int k = 0; k < DROPS; k++) {
         omp_set_num_threads(1);
         if (model[k] && model[k]->node_count > 0)
-            run(model[k], figure[k]);
+            run(model[k], store, figure[k]);
         else
             figure[k][A_MAX] = figure[k][HIC] = NAN;
     }
@@ -94,7 +119,7 @@ static void run_all(sf_model *const model[DROPS], double figure[DROPS][FIGURES])
  * do not rebound it is all 0; a change is 0 where its drop does not. `kernel`: of both; `a_max`: that of
  * `section`, g, 0 if it does not rebound. */
 static sf_status run_section(const sf_model *section, sf_model *fine, const sf_kernel *kernel,
-                             sf_section_drop *out, double *a_max, sf_error *err) {
+                             const char *store, sf_section_drop *out, double *a_max, sf_error *err) {
     SF_OWNED_BY(sf_model_free) sf_model equal = {0};
     SF_OWNED_BY(sf_model_free) sf_model faster = {0};
     SF_OWNED_BY(sf_model_free) sf_model thinner = {0};
@@ -105,7 +130,7 @@ static sf_status run_section(const sf_model *section, sf_model *fine, const sf_k
     make_thinner(kernel, &thinner);
     sf_model *const model[DROPS] = {fine, &equal, &faster, &thinner};
     double figure[DROPS][FIGURES];
-    run_all(model, figure);
+    run_all(model, store, figure);
     take(figure, out);
     *a_max = out->a_max_g > 0 ? figure[EQUAL][A_MAX] : 0;
     return SF_OK;
@@ -113,11 +138,11 @@ static sf_status run_section(const sf_model *section, sf_model *fine, const sf_k
 
 /* The error of a_max to expect in a drop that these are like; 0 where one of them fails or does not rebound.
  */
-static double error_alike(sf_model *section, sf_model *fine) {
+static double error_alike(sf_model *section, sf_model *fine, const char *store) {
     sf_model *const model[DROPS] = {[FINE] = fine, [EQUAL] = section};
     double figure[DROPS][FIGURES];
     sf_section_drop drop;
-    run_all(model, figure);
+    run_all(model, store, figure);
     take(figure, &drop);
     return drop.a_max_g > 0 ? UNLIKE * (fabs(drop.a_max_g / figure[EQUAL][A_MAX] - 1) + drop.a_max_error) : 0;
 }
@@ -128,6 +153,7 @@ static sf_status build_sections(const sf_case_input *input, const sf_model *mode
     for (int k = model->axisymmetric ? SF_SECTION_FINE : 0; k < SF_SECTIONS; k++) {
         SF_OWNED_BY(sf_case_free) sf_case c = {0};
         SF_TRY(sf_case_read_values(input, NULL, NULL, &c, err));
+        c.store = sections->store;
         *kernel = (sf_kernel){c.support_ratio, c.condition_limit};
         SF_TRY(sf_sections_build(sections, k, &c, &built[k], err));
     }
@@ -159,13 +185,14 @@ static double find_error(sf_sections *sections, const sf_kernel *kernel, sf_mode
     sf_error none = SF_ERROR_INIT;
     double a_max = 0;
     if (sections->alike) {
-        double error = error_alike(equal, fine);
+        double error = error_alike(equal, fine, sections->store);
         if (!(error > model->expected_mesh_error)) /* on few rows of cells it may be small by chance */
             return NAN;
         model->expected_mesh_error = error;
         return error;
     }
-    run_section(model->axisymmetric ? model : equal, fine, kernel, &model->section, &a_max, &none);
+    run_section(model->axisymmetric ? model : equal, fine, kernel, sections->store, &model->section, &a_max,
+                &none);
     return none.status == SF_OK && a_max > 0 ? a_max / model->section.a_max_g - 1 : NAN;
 }
 

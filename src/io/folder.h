@@ -34,7 +34,6 @@ void sf_folder_leave(const char *path);
 /* The number of names in the folder that begin with `prefix`; -1: it cannot be read. */
 int64_t sf_folder_count(const char *path, const char *prefix);
 
-
 /* A folder of intermediate results that are found again by a key of everything they follow from: a file
  * KIND-<key, 16 hexadecimal digits>.bin each, written aside and renamed, with a checksum. A file that is
  * damaged or of another key counts as absent, and one that cannot be kept is not: the store saves time, and
@@ -42,6 +41,10 @@ int64_t sf_folder_count(const char *path, const char *prefix);
 
 /* The folder of SOFTFALL_SHARE if that is set, or else the given one. */
 const char *sf_store_folder(const char *given);
+
+/* Begins the key of a value that follows from the code: a hash of the program, and of the library that this
+ * is in where a program such as Python has loaded it. False: one cannot be read. */
+bool sf_store_begin_key(uint64_t *key);
 
 /* Before the files would take more bytes than this, all are removed. */
 #define SF_STORE_MOST (UINT64_C(1) << 30)

@@ -169,6 +169,8 @@ sf_status sf_model_make(sf_case *c, sf_model *model, sf_build_report *report,
     sf_surface surface = {0}, support[SF_SUPPORTS] = {0};
     sf_mesh mesh = {0};
     memset(model, 0, sizeof *model);
+    if (sections)
+        sections->store = c->store;
     if (read_geometry(c, &mesh, &surface, support, libraries, sink, err) == SF_OK && sections)
         cut_section(c, &mesh, &surface, sections);
     if (err->status == SF_OK && sf_model_build(c, &mesh, &surface, model, report, sink, err) == SF_OK) {

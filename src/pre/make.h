@@ -13,7 +13,8 @@ enum { SF_SECTION_EQUAL, SF_SECTION_FINE, SF_SECTIONS };
 typedef struct sf_sections {
     sf_mesh mesh[SF_SECTIONS];
     sf_surface missile[SF_SECTIONS];
-    bool alike; /* of another drop than the model's */
+    bool alike;        /* of another drop than the model's */
+    const char *store; /* for their domains and figures (io/folder.h); borrowed from the case; NULL: none */
 } sf_sections;
 
 void sf_sections_free(sf_sections *sections);

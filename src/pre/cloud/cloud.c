@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pre/cloud/cloud.h"
 
-#include <dlfcn.h>
-
 #include "base/hash.h"
 #include "base/mat3.h"
 #include "base/sets.h"
@@ -173,23 +171,11 @@ typedef struct numbers {
     sf_domain_figures figures;
 } numbers;
 
-/* Hashes the program, and the library that this code is in where a program such as Python has loaded it.
- * False: one cannot be read. */
-static bool hash_code(uint64_t code[2]) {
-    Dl_info own = {0};
-    code[1] = 0;
-    return sf_plain_hash("/proc/self/exe", NULL, SF_PLAIN_ANY, &code[0], SF_IGNORED) == SF_OK &&
-           dladdr(KIND, &own) != 0 &&
-           (!strstr(sf_path_name(own.dli_fname), ".so") ||
-            sf_plain_hash(own.dli_fname, NULL, SF_PLAIN_ANY, &code[1], SF_IGNORED) == SF_OK);
-}
-
+/* False: this program cannot be read. */
 static bool find_key(const sf_mesh *mesh, double condition_limit, const double *support, uint64_t *key) {
-    uint64_t code[2];
     size_t n = (size_t)mesh->node_count, cells = (size_t)mesh->cell_count;
-    if (!hash_code(code))
+    if (!sf_store_begin_key(key))
         return false;
-    *key = sf_hash_bytes(SF_HASH_START, code, sizeof code);
     *key = sf_hash_bytes(*key, &condition_limit, sizeof condition_limit);
     *key = sf_hash_bytes(*key, support, n * sizeof *support);
     *key = sf_hash_bytes(*key, mesh->position, 3 * n * sizeof *mesh->position);
