@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 import softfall
 from conftest import command_here
@@ -230,6 +231,26 @@ def test_a_bend_of_the_whole_curve_is_a_scale_of_its_stress(lab: Path, tmp_path:
         slopes = problem.bend_slopes(x)[0]
     assert slopes.sum(axis=1)[:3] == pytest.approx((more - base)[:3] / 0.03, rel=0.08, abs=0.01)  # second order
     assert abs(slopes[0, 9]) < 1e-2 * abs(slopes[0]).max()  # no node is compressed so far
+
+
+def test_a_pole_at_1_leaves_most_beyond_what_was_fitted() -> None:
+    """Forms fitted by ln(stress) up to a strain of 0.83 to the gas_solid of another solid density: what they leave up to there, and at 0.9."""
+    strain, truth = np.append(np.linspace(0.05, 0.83, 60), 0.9), library.Form(35.0, "gas_solid", 940.0)
+    stress = truth.loading(truth.start({}, []), 0.0, strain)
+
+    def left(curve: str, solid: float, sd: dict[str, float]) -> Any:
+        form = library.Form(35.0, curve, solid)
+        places = [form.index[name] for name in sd]
+
+        def off(u: Any) -> Any:
+            values = form.start({}, [])
+            values[places] *= np.exp(u)
+            return np.log(stress / form.loading(values, 0.0, strain))
+        return off(least_squares(lambda u: np.append(off(u)[:-1] / 0.1, u / list(sd.values())), np.zeros(len(sd))).x)
+    shape = {"s0": 0.7, "p0": 0.15, "B": 1.0, "m": 0.3}
+    gas, known, unknown = left("gas", 940.0, shape), left("gas_solid", 700.0, shape), left("gas_solid", 700.0, {**shape, "solid_fraction": 0.7})
+    assert np.abs(gas[:-1]).max() < 0.06 and gas[-1] > 0.4
+    assert abs(unknown[-1]) < 0.5 * abs(known[-1]) < 0.5 * 0.6
 
 
 def test_cushion_curves_alone(tmp_path: Path) -> None:
