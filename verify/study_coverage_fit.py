@@ -4,9 +4,10 @@
 
     verify/study_coverage_fit.py [DIR] [--foams N] [--first N] [--jobs N] [--spacing MM]
 
-The loading curve of a foam is a gas curve bent at random, its stress grows with a power of the strain rate,
-and half of the foams lock up at a strain of their own. Three drops of a hemisphere on 70 mm at 4.5, 5.2 and 6.2 m/s are measured with noise (1 % in a_max, 2 % in HIC, windows
-rounded to 0.5 ms); foretold is what is measured so on 50 mm at 5.0 m/s and on 70 mm at 5.7 m/s. Truth and models have one mesh, so that its error is left out. DIR/foams.csv has a row for each
+The loading curve of a foam is a gas curve bent at random, with a pole and a knee of its own; its stress grows with a power of the strain rate, and half of the foams lock up
+earlier. Three drops of a hemisphere on 70 mm at 4.5, 5.2 and 6.2 m/s are measured with noise (1 % in a_max, 2 % in HIC, windows rounded to 0.5 ms); foretold is what is measured
+so on 50 mm at 5.0 m/s and on 70 mm at 5.7 m/s. Truth and models have one mesh, so that its error is left out. The default of six foams shows gross errors alone (three that miss),
+not whether 93 to 99 % are held: that takes --foams 200, about three hours of processor time. DIR/foams.csv has a row for each
 foam, which a repeat takes from there (--foams 0: the table alone); DIR/coverage.md has the table. Exit code: the number of bounds that do not hold.
 """
 from __future__ import annotations
@@ -38,7 +39,7 @@ from softfall.fit.drops import COARSE, OWN, SECTION, Bench, Outcome  # noqa: E40
 DROPS = (("70-4.5", 70, 4.5), ("70-5.2", 70, 5.2), ("70-6.2", 70, 6.2), ("50-5.0", 50, 5.0), ("70-5.7", 70, 5.7))
 MEASURED, NOISE, WINDOW = 3, {"a_max_g": 0.01, "HIC": 0.02}, 0.5
 KEYS = ("a_max_g", "HIC", "HIC_window_ms")
-EFFORT = posterior.Effort(first=50, second=30, draws=50, rounds=2, steps=500, burn=200)  # short chains; softfall fit takes longer ones
+EFFORT = posterior.Effort(first=90, second=60, draws=60, rounds=2, steps=500, burn=200)  # short chains; softfall fit takes longer ones
 HELD = (0.93, 0.99)  # of the foams; fails where the binomial interval of their share lies outside
 FORMS = ('{ curve = "gas_solid"; rate = "factor"; unknown = ( { name = "s0"; }, { name = "p0"; }, { name = "B"; }, { name = "m"; }, { name = "solid_fraction"; prior_sd = 0.7; } ); }, '
          '{ curve = "avalle"; rate = "factor"; unknown = ( { name = "avalle_A"; }, { name = "avalle_m"; }, { name = "avalle_B"; }, { name = "avalle_n"; }, { name = "locked_fraction"; } ); }')
@@ -73,12 +74,16 @@ class Direct(Bench):
 
 def write_foam(folder: Path, random: np.random.Generator) -> bool:
     """Writes a foam as truth.cfg, and returns whether it locks up."""
-    strain, pole = np.linspace(0, 0.93, 300), 1 - 1.4 * PHI
     power, wave = random.uniform(0.01, 0.05), np.arange(4)
     yielding, gas, dense, exponent = np.array([8e3, 115e3, 30e3, 2.2]) * np.exp(np.array([0.4, 0.15, 0.5, 0.15]) * random.standard_normal(4))
     size, phase = random.normal(0, 0.08 / (wave + 1)), random.uniform(0, 2 * math.pi, 4)
+    locks = math.exp(random.normal(0, 0.7))
+    lines = [f'HU = {min(0.99, 0.4 * math.exp(random.normal(0, 0.4))):.6g};', f"SHAPE = {2 * math.exp(random.normal(0, 0.3)):.6g};", f"ALPHA = {random.uniform(0.6, 1):.6g};"]
+    left, knee = random.uniform(1.4, 2.0) * PHI, math.exp(random.normal(0, 0.25))  # of the thickness at the pole: 1.4 by Gibson and Ashby, up to 2 by others; 1: the knee of gas_solid
+    dense_part = np.linspace(0, 0.98, 300)
+    strain = (1 - left) * dense_part
     bend = (size * (np.sin(2 * math.pi * np.outer(strain, wave + 0.5) + phase) - np.sin(phase))).sum(axis=1)
-    stress = np.exp(bend) * (-yielding * np.expm1(-0.3e6 * strain / yielding) + gas * strain / (1 - strain - PHI) + dense * (strain / (pole - strain)) ** exponent)
+    stress = np.exp(bend) * (-yielding * np.expm1(-0.3e6 * strain / yielding) + gas * strain / (1 - strain - PHI) + dense * (dense_part / (1 - dense_part**knee)) ** exponent)
     for k in range(1, len(stress)):
         stress[k] = max(stress[k], 1.001 * stress[k - 1])
     curves = []
@@ -86,12 +91,11 @@ def write_foam(folder: Path, random: np.random.Generator) -> bool:
         rate = 100.0**number
         curves.append(f'{{ rate = "{0.01 * rate:g} 1/s"; file = "truth-{number}.csv"; }}')
         (folder / f"truth-{number}.csv").write_text("strain,stress_kPa\n" + "".join(f"{e:.6f},{s * rate**power / 1e3:.8g}\n" for e, s in zip(strain, stress)))
-    own = 1 - 1.4 * PHI * math.exp(random.normal(0, 0.7))
-    lines = [f'HU = {min(0.99, 0.4 * math.exp(random.normal(0, 0.4))):.6g};', f"SHAPE = {2 * math.exp(random.normal(0, 0.3)):.6g};", f"ALPHA = {random.uniform(0.6, 1):.6g};"]
-    if own < pole:
+    if locks > 1:
+        own = 1 - left * locks
         lines.append(f'densification = {{ rule = "H2"; start = {0.95 * own:.8g}; exponent = 1; limit = {own:.8g}; }};')
     (folder / "truth.cfg").write_text(f'density = "35 kg/m3"; E = "0.4136 MPa"; DAMP = 0.05; damp_length = "spacing"; curves = ( {", ".join(curves)} );\n' + "\n".join(lines) + "\n")
-    return own < pole
+    return locks > 1
 
 
 def write_cases(folder: Path, spacing: float) -> None:
@@ -132,10 +136,10 @@ def write_fit(folder: Path, truth: dict[str, Outcome], random: np.random.Generat
                      f'HIC_window_resolution_ms = {WINDOW}; a_max_sd = {NOISE["a_max_g"]}; HIC_sd = {NOISE["HIC"]}; }}')
     predict = ", ".join(f'{{ name = "{name}"; case = "{name}.cfg"; }}' for name, *_ in DROPS[MEASURED:])
     (folder / "start.cfg").write_text('density = "35 kg/m3"; E = "0.4136 MPa"; curve = "start.csv"; HU = 0.5; SHAPE = 3.0; ALPHA = 1.0; DAMP = 0.05; damp_length = "spacing";\n'
-                                      'rate_factor = 0.2; rate_reference = "1 1/s"; rate_filter_time = "0.5 ms";\n')
+                                      'rate_factor = 0.2; rate_reference = "0.001 1/s"; rate_filter_time = "0.5 ms";\n')
     (folder / "start.csv").write_text((ROOT / "examples/fit/eva35_start.csv").read_text())
     (folder / "fit.cfg").write_text('material = "start.cfg"; solid_density = "940 kg/m3";\nunknown = ( { name = "HU"; prior_sd = 0.5; }, { name = "SHAPE"; prior_sd = 0.6; }, '
-                                    '{ name = "ALPHA"; prior_sd = 0.5; }, { name = "rate_filter_time"; } );\nforms = ( ' + FORMS + " );\ndrops = (\n" + ",\n".join(lines)
+                                    '{ name = "ALPHA"; prior_sd = 0.5; }, { name = "rate_filter_time"; }, { name = "rate_factor"; prior_sd = 1.0; } );\nforms = ( ' + FORMS + " );\ndrops = (\n" + ",\n".join(lines)
                                     + f"\n);\npredict = ( {predict} );\n")
 
 
@@ -209,7 +213,7 @@ def report(rows: list[dict[str, str]], folder: Path) -> int:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("folder", nargs="?", default="out/coverage_fit", type=Path)
-    parser.add_argument("--foams", type=int, default=200)
+    parser.add_argument("--foams", type=int, default=6)
     parser.add_argument("--first", type=int, default=0, help="number of the first foam")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--spacing", type=float, default=20.0, help="mm, of the mesh")
