@@ -69,7 +69,7 @@ static const sf_key keys[] = {
      "contact of the pad's free faces with each other and with the anvil: `auto` where they lie before each other within the pad's thickness",
      .words = "auto|on|off"},
     {"pad", "self_friction", SF_KEY_NUMBER, "0.0", AT(self_friction),
-     "Coulomb coefficient of that contact", .high = 10.0},
+     "Coulomb coefficient of that contact; on the anvil of a resting pad it is `friction`", .high = 10.0},
     {"pad", "triangle_centroids", SF_KEY_BOOL, "false", AT(triangle_centroids),
      "points of that contact also at the centroids of triangles, for faces of prisms or tetrahedra that do not match; several times the time"},
     {"pad", "mesh_error_limit", SF_KEY_NUMBER, "0.1", AT(mesh_error_limit),

@@ -57,8 +57,10 @@ double sf_pair_friction(const sf_scene *c, const sf_contact_pair *q) {
         return m->support_friction[q->body - SF_BODY_SUPPORT];
     if (q->body == SF_BODY_SYMMETRY_X || q->body == SF_BODY_SYMMETRY_Y)
         return 0;
-    if (c->response)
-        return q->body == SF_BODY_ANVIL ? m->anvil.friction : m->missile.friction;
+    if (q->body == SF_BODY_MISSILE)
+        return m->missile.friction;
+    if (q->body == SF_BODY_ANVIL && m->rest_count > 0) /* else there is one for free faces alone */
+        return m->anvil.friction;
     for (int64_t k = 0; k < m->pair_count && q->facet >= 0; k++) {
         const uint8_t *layer = &m->pair_layer[2 * k];
         int own = m->node_material[skin->node[sf_skin_member(skin, q->node, 0)]],

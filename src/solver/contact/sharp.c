@@ -13,13 +13,10 @@ static const double TILT = 0.3;      /* largest sine by which the body may lean 
 
 /* ---- constants ---- */
 
-static sf_status mark_planes(const sf_skin_planes *planes, sf_sharp *e, sf_error *err) {
+static sf_status mark_planes(const sf_skin *skin, sf_sharp *e, sf_error *err) {
     e->corner_plane = sf_alloc(err, e->ridges.corner_count, 1, "sharp edges");
     for (int64_t k = 0; e->corner_plane && k < e->ridges.corner_count; k++)
-        for (int r = 0; r < 2; r++) {
-            double x = e->position[3 * (int64_t)e->ridges.corner[k] + r];
-            e->corner_plane[k] |= (uint8_t)((fabs(x - planes->place[r]) < planes->near) << r);
-        }
+        e->corner_plane[k] = (uint8_t)sf_skin_planes_at(skin, &e->position[3 * (int64_t)e->ridges.corner[k]]);
     return err->status;
 }
 
@@ -40,8 +37,7 @@ sf_status sf_sharp_build(const sf_model *m, bool missile, const sf_skin *skin, s
     int64_t nodes = missile ? m->surface_node_count : m->support_node_count,
             triangles = missile ? m->surface_triangle_count : m->support_triangle_count;
     const int32_t *triangle = missile ? m->surface_triangle : m->support_triangle;
-    const sf_skin_planes planes = sf_skin_find_planes(m);
-    const sf_ridge_limits limits = {.place = {planes.place[0], planes.place[1]},
+    const sf_ridge_limits limits = {.place = {skin->plane[0], skin->plane[1]},
                                     .spacing = skin->spacing,
                                     .depth = m->axisymmetric ? SF_SECTION_DEPTH : SF_SMOOTH_DEPTH};
     *e = (sf_sharp){.position = missile ? m->surface_position : m->support_position};
@@ -51,7 +47,7 @@ sf_status sf_sharp_build(const sf_model *m, bool missile, const sf_skin *skin, s
     if (err->status == SF_OK && m->axisymmetric)
         keep_section(e->position, &e->ridges);
     else if (err->status == SF_OK)
-        mark_planes(&planes, e, err);
+        mark_planes(skin, e, err);
     e->is_there = e->ridges.corner_count + (m->axisymmetric ? e->ridges.count : 0) > 0;
     if (err->status != SF_OK || !e->is_there)
         sf_sharp_free(e);

@@ -143,16 +143,22 @@ static sf_status part_sides(sf_skin *skin, sf_error *err) {
     return SF_OK;
 }
 
-sf_skin_planes sf_skin_find_planes(const sf_model *m) {
-    static const double ON_PLANE = 1e-6; /* of the thickness */
-    sf_skin_planes out = {.near = ON_PLANE * m->thickness};
+int sf_skin_planes_at(const sf_skin *skin, const double x[3]) {
+    int in = 0;
     for (int r = 0; r < 2; r++)
-        out.place[r] = sf_symmetry_plane(m, r, &out.place[r]) ? out.place[r] : NAN;
-    return out;
+        in |= (fabs(x[r] - skin->plane[r]) < skin->on_plane) << r;
+    return in;
+}
+
+static sf_skin begin(const sf_model *m) {
+    static const double ON_PLANE = 1e-6; /* of the thickness */
+    sf_skin skin = {.spacing = INFINITY, .on_plane = ON_PLANE * m->thickness};
+    for (int r = 0; r < 2; r++)
+        skin.plane[r] = sf_symmetry_plane(m, r, &skin.plane[r]) ? skin.plane[r] : NAN;
+    return skin;
 }
 
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
-    const sf_skin_planes planes = sf_skin_find_planes(m);
     SF_OWNED uint8_t *mark = sf_alloc(err, m->node_count, 1, "skin of the pad");
     SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->held, skin->count), SF_ROOM(skin->rests, skin->count));
     for (int64_t k = 0; err->status == SF_OK && k < m->fixed_count; k++)
@@ -164,19 +170,21 @@ static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
         skin->rests[p] = mark[skin->node[p]] >> 3;
     }
     for (int64_t p = skin->moving; err->status == SF_OK && p < skin->nodes; p++)
-        for (int axis = 0; axis < 2; axis++)
-            if (fabs(skin->rest[3 * p + axis] - planes.place[axis]) < planes.near)
-                skin->held[p] |= (uint8_t)(1 << axis);
+        skin->held[p] = (uint8_t)sf_skin_planes_at(skin, &skin->rest[3 * p]);
     return err->status;
 }
 
-/* 1 or 2 if both points lie in the symmetry plane normal to x or y, 0 if not. */
-static int plane_of(const sf_skin *skin, const sf_skin_planes *planes, int64_t a, int64_t b) {
-    for (int r = 0; r < 2; r++)
-        if (fabs(skin->rest[3 * a + r] - planes->place[r]) < planes->near &&
-            fabs(skin->rest[3 * b + r] - planes->place[r]) < planes->near)
-            return r + 1;
-    return 0;
+/* The symmetry plane that the line lies in, 1 normal to x or 2 to y, beyond which its one face goes on; 0:
+ * none. Of a line in both it is the one that bounds the foam behind the face. */
+static int plane_of(const sf_skin *skin, const int32_t line[3]) {
+    double normal[3], arm[3];
+    int in = sf_skin_planes_at(skin, &skin->rest[3 * (int64_t)line[0]]) &
+             sf_skin_planes_at(skin, &skin->rest[3 * (int64_t)line[1]]);
+    if (in < 3)
+        return in;
+    sf_face_normal(skin->rest, line, normal);
+    sf_sub3(&skin->rest[3 * (int64_t)line[2]], &skin->rest[3 * (int64_t)line[0]], arm);
+    return normal[0] * arm[0] < normal[1] * arm[1] ? 2 : 1;
 }
 
 /* True if the faces at a line, of two half edges or one in a symmetry plane, are sharp and convex. */
@@ -198,21 +206,19 @@ static sf_status alloc_lines(sf_skin *skin, int64_t most, sf_error *err) {
 }
 
 /* Lists the edges of two faces; in a symmetry plane the second one is the mirror image of the first. */
-static sf_status list_lines(const sf_model *m, sf_skin *skin, sf_error *err) {
-    const sf_skin_planes planes = sf_skin_find_planes(m);
+static sf_status list_lines(sf_skin *skin, sf_error *err) {
     int64_t count = 3 * skin->faces;
     SF_OWNED sf_half_edge *half = sf_half_edges(skin->faces, skin->facet, err);
     SF_TRY(alloc_lines(skin, count, err));
     for (int64_t k = 0, end; k < count; k = end) {
         end = sf_half_edges_end(half, k, count);
-        int plane = end == k + 1 ? plane_of(skin, &planes, half[k].low, half[k].high) : 0;
-        if (end != k + 2 && plane == 0)
-            continue;
         int64_t one = half[k].slot, other = half[end - 1].slot;
         int32_t *line = &skin->line[4 * skin->line_count];
-        line[0] = skin->facet[one];
-        line[1] = skin->facet[one - one % 3 + (one + 1) % 3];
-        line[2] = skin->facet[one - one % 3 + (one + 2) % 3];
+        for (int of = 0; of < 3; of++)
+            line[of] = skin->facet[one - one % 3 + (one + of) % 3];
+        int plane = end == k + 1 ? plane_of(skin, line) : 0;
+        if (end != k + 2 && plane == 0)
+            continue;
         line[3] = plane > 0 ? -plane : skin->facet[other - other % 3 + (other + 2) % 3];
         skin->line_of[one] = (int32_t)skin->line_count;
         skin->is_sharp[skin->line_count] =
@@ -277,13 +283,15 @@ static sf_status build_rows(const sf_model *m, sf_skin *skin, sf_error *err) {
 }
 
 sf_status sf_skin_build(const sf_model *m, sf_skin *skin, sf_error *err) {
-    *skin = (sf_skin){.spacing = INFINITY, .alone = m->skin_alone, .watched = m->skin_watched};
+    *skin = begin(m);
+    skin->alone = m->skin_alone;
+    skin->watched = m->skin_watched;
     if (m->skin_count == 0)
         return SF_OK;
     if (number_nodes(m, skin, err) != SF_OK || place_nodes(m, skin, err) != SF_OK ||
         list_rings(skin, err) != SF_OK || find_normals(skin, err) != SF_OK ||
         part_sides(skin, err) != SF_OK || mark_held(m, skin, err) != SF_OK ||
-        list_lines(m, skin, err) != SF_OK || mark_passive(skin, err) != SF_OK ||
+        list_lines(skin, err) != SF_OK || mark_passive(skin, err) != SF_OK ||
         build_rows(m, skin, err) != SF_OK)
         sf_skin_free(skin);
     return err->status;
@@ -305,12 +313,12 @@ static sf_status build_contact(const sf_model *m, sf_skin *skin, sf_error *err) 
     for (int64_t k = 0; k < 3 * skin->faces; k++)
         skin->facet[k] = (int32_t)sf_list_find(m->contact_node, 0, m->contact_count, m->contact_face[k]);
     if (skin->faces > 0)
-        SF_TRY(m->axisymmetric ? list_sides(skin, err) : list_lines(m, skin, err));
+        SF_TRY(m->axisymmetric ? list_sides(skin, err) : list_lines(skin, err));
     return sf_contact_rows_build(m, count, skin->node, &skin->rows, err);
 }
 
 sf_status sf_skin_build_contact(const sf_model *m, sf_skin *skin, sf_error *err) {
-    *skin = (sf_skin){.spacing = INFINITY};
+    *skin = begin(m);
     if (build_contact(m, skin, err) != SF_OK)
         sf_skin_free(skin);
     return err->status;

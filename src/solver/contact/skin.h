@@ -46,16 +46,15 @@ typedef struct sf_skin {
     bool alone;           /* the pad touches the supports only */
     bool watched;         /* its pairs with itself have no forces */
     double spacing;       /* m, smallest of the skin, or of the points that the missile may touch */
+    double plane[2];      /* m, places of the symmetry planes normal to x and y; NAN: there is none */
+    double on_plane;      /* m, how near to one a point lies in it */
     sf_contact_rows rows;
 } sf_skin;
 
 enum { SF_NO_FACES = -3 };
 
-/* The symmetry planes (m), NAN where there is none, and how near (m) to one a point lies in it. */
-typedef struct sf_skin_planes {
-    double place[2], near;
-} sf_skin_planes;
-sf_skin_planes sf_skin_find_planes(const sf_model *model);
+/* Returns the bits of the symmetry planes, 1 normal to x and 2 to y, that a place (m) at rest lies in. */
+int sf_skin_planes_at(const sf_skin *skin, const double x[3]);
 
 sf_status sf_skin_build(const sf_model *model, sf_skin *skin, sf_error *err);
 sf_status sf_skin_build_contact(const sf_model *model, sf_skin *skin, sf_error *err);
