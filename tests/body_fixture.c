@@ -31,7 +31,7 @@ void body_build(body *b, double reach, sf_body *out) {
     b->model.surface_triangle_count = b->surface.triangle_count;
     b->model.surface_position = b->surface.position;
     b->model.surface_triangle = b->surface.triangle;
-    assert_int_equal(sf_body_of_missile(&b->model, out, &err), SF_OK);
+    assert_int_equal(sf_body_build(&b->model, SF_BODY_MISSILE, out, &err), SF_OK);
 }
 
 void body_free(body *b, sf_body *s) {

@@ -4,9 +4,9 @@
 #define SF_TESTS_BODY_FIXTURE_H
 
 #include "pre/mesh/mesh.h"
-#include "solver/contact/shapes.h"
+#include "solver/contact/shape.h"
 
-/* A surface and the model around it that sf_body_of_missile reads. */
+/* A surface and the model around it that sf_body_build reads. */
 typedef struct body {
     sf_surface surface;
     sf_model model;

@@ -6,6 +6,7 @@
 
 #include "base/mat3.h"
 #include "solver/contact/contact.h"
+#include "solver/contact/pair.h"
 #include "solver/run/frame.h"
 #include "solver/step.h"
 #include <math.h>
@@ -265,6 +266,48 @@ static void sphere_and_its_triangles_give_the_same_drop(void **state) {
 
 /* A point that is free and deeper than a tenth of its spacing did not come through the surface: nothing
  * pushes it. */
+/* A shape that the solver does not know: the half-space above z = 60 mm, as a row of the table of shapes. */
+static bool above_is_near(const void *data, const double x[3], double margin) {
+    (void)data;
+    return x[2] > 0.06 - margin;
+}
+
+static bool above_gap(const void *data, const double x[3], double *gap, double normal[3]) {
+    (void)data;
+    *gap = 0.06 - x[2];
+    memcpy(normal, (const double[3]){0, 0, -1}, 3 * sizeof *normal);
+    return true;
+}
+
+/* A row is all that a new shape needs: the half-space presses the block as the plate's triangles do. */
+static void a_shape_is_one_row(void **state) {
+    (void)state;
+    static const sf_shape above = {.is_near = above_is_near,
+                                   .gap = above_gap,
+                                   .meet = sf_pair_missile,
+                                   .entry = 0.1,
+                                   .deepest = INFINITY};
+    fixture plate, half_space;
+    start_press(&plate, 0.3, 0.2);
+    start_press(&half_space, 0.3, 0.2);
+    sf_body_free(&half_space.operators.body[SF_BODY_MISSILE]);
+    half_space.operators.body[SF_BODY_MISSILE] = (sf_body){.shape = &above};
+    for (int k = 0; k < 200; k++) {
+        fixture_step(&plate);
+        fixture_step(&half_space);
+        sf_step_advance(&plate.model, &plate.state);
+        sf_step_advance(&half_space.model, &half_space.state);
+    }
+    assert_true(plate.state.contact_count > 20);
+    assert_int_equal(plate.state.contact_count, half_space.state.contact_count);
+    double most = largest_of(plate.state.d, 3 * plate.model.node_count);
+    for (int64_t k = 0; k < 3 * plate.model.node_count; k++)
+        assert_true(fabs(plate.state.d[k] - half_space.state.d[k]) < 1e-9 * most);
+    half_space.operators.body[SF_BODY_MISSILE] = (sf_body){0};
+    fixture_free(&plate);
+    fixture_free(&half_space);
+}
+
 static void points_that_come_from_behind_stay_free(void **state) {
     (void)state;
     for (int deep = 0; deep < 2; deep++) {
@@ -292,6 +335,7 @@ int main(void) {
         cmocka_unit_test(smooth_plate_slides_at_the_coulomb_bound),
         cmocka_unit_test(sliding_friction_loses_energy),
         cmocka_unit_test(sphere_and_its_triangles_give_the_same_drop),
+        cmocka_unit_test(a_shape_is_one_row),
         cmocka_unit_test(points_that_come_from_behind_stay_free),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The missile alone, with forces applied by hand: free fall, momentum, prescribed motion, symmetry. */
-#include "solver/contact/shapes.h"
+#include "solver/contact/shape.h"
 #include "solver/missile.h"
 
 #include "base/mat3.h"
@@ -185,7 +185,7 @@ static void the_surface_goes_with_the_pose(void **state) {
     m.missile.sphere_radius = 0.08;
     m.missile.sphere_cap_cosine = -1;
     sf_body surface;
-    assert_int_equal(sf_body_of_missile(&m, &surface, &err), SF_OK);
+    assert_int_equal(sf_body_build(&m, SF_BODY_MISSILE, &surface, &err), SF_OK);
     sf_missile missile;
     sf_missile_begin(&m, &missile);
     missile.displacement = 0.02;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "extreme.h"
-#include "solver/contact/shapes.h"
+#include "solver/contact/shape.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -43,7 +43,7 @@ static sf_body sphere(double cap_cosine) {
                                   .sphere_radius = 0.08,
                                   .sphere_cap_cosine = cap_cosine,
                                   .direction = {0, 0.6, -0.8}}};
-    assert_int_equal(sf_body_of_missile(&model, &s, &err), SF_OK);
+    assert_int_equal(sf_body_build(&model, SF_BODY_MISSILE, &s, &err), SF_OK);
     return s;
 }
 

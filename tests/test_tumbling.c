@@ -3,7 +3,7 @@
 #include "extreme.h"
 
 #include "base/mat3.h"
-#include "solver/contact/shapes.h"
+#include "solver/contact/shape.h"
 #include "solver/missile.h"
 
 #include <math.h>
@@ -220,7 +220,7 @@ static void the_surface_turns_with_the_body(void **state) {
     m.missile.sphere_centre[1] = m.missile.centre[1];
     m.missile.sphere_centre[2] = m.missile.centre[2];
     sf_body surface;
-    assert_int_equal(sf_body_of_missile(&m, &surface, &err), SF_OK);
+    assert_int_equal(sf_body_build(&m, SF_BODY_MISSILE, &surface, &err), SF_OK);
     sf_missile missile;
     sf_missile_begin(&m, &missile);
     assert_close(missile.radius, 0.11, 1e-15);

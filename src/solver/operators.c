@@ -2,7 +2,6 @@
 #include "solver/operators.h"
 
 #include "model/stability.h"
-#include "solver/contact/shapes.h"
 #include "solver/set.h"
 
 static sf_status build_laws(const sf_model *m, sf_operators *op, sf_error *err) {
@@ -32,10 +31,12 @@ static sf_status build(const sf_model *m, sf_model *owned, sf_operators *op, sf_
     SF_TRY(sf_skin_build(m, &op->skin, err));
     SF_TRY(sf_skin_build_contact(m, &op->contact, err));
     SF_TRY(sf_weight_build(m, &op->contact.rows, &op->weight, err));
-    SF_TRY(sf_bodies_of_planes(m, op->skin.spacing, op->body, err));
-    SF_TRY(sf_body_of_missile(m, &op->body[SF_BODY_MISSILE], err));
-    SF_TRY(sf_sharp_build(m, true, &op->contact, &op->contact_sharp, err));
-    SF_TRY(sf_sharp_build(m, false, &op->skin, &op->skin_sharp, err));
+    for (int b = 0; b <= SF_BODY_MISSILE; b++)
+        SF_TRY(sf_body_build(m, b, &op->body[b], err));
+    const sf_shape_triangles missile = sf_shape_triangles_of(m, SF_BODY_MISSILE),
+                             support = sf_shape_triangles_of(m, SF_BODY_SUPPORT);
+    SF_TRY(sf_sharp_build(m, &missile, &op->contact, &op->contact_sharp, err));
+    SF_TRY(sf_sharp_build(m, &support, &op->skin, &op->skin_sharp, err));
     return m->set ? sf_set_check_missile(m, &op->body[SF_BODY_MISSILE], err) : SF_OK;
 }
 

@@ -147,7 +147,7 @@ typedef struct sf_sharp_state {
 /* Memory of a solve, taken in the first step and used again in each. */
 typedef struct sf_contact_work {
     sf_workspace pair, edge_force, old_key, old_force;                /* pairs */
-    sf_workspace centre, radius, found, used, is_near, near_list, list; /* contact/broad.c */
+    sf_workspace centre, radius, found, used, list;           /* candidates */
     sf_workspace grid_start[2], grid_node[2];                         /* of pad and supports */
 } sf_contact_work;
 

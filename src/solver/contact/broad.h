@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The broad phase of a solve: lists of what may touch soon. They are made anew when the fastest may have left
- * them: a contact point has its body, a node of the skin the facets near it, a sharp edge the faces near it.
- */
+/* The broad phase of a solve: lists of what may touch soon, which each shape makes (contact/shape.h). They
+ * are made anew when the fastest may have left them. */
 #pragma once
-#include "solver/contact/sharp.h"
 #include "solver/contact/pair.h"
 
 /* Takes the last step's travel off the room of the lists; true: they must be made anew. Then all points are

@@ -4,15 +4,12 @@
 #include "solver/contact/broad.h"
 #include "solver/contact/ledger.h"
 #include "solver/contact/pairs.h"
-#include "solver/contact/shape_face.h"
 #include "solver/contact/solve.h"
 
-/* The end of the sweeps (contact/solve.h): of contact points, whose forces are the figure, and of the skin;
- * and where there are sharp edges or centroids, whose rows depend on those of the nodes. */
-static const sf_contact_system CONTACT = {.sweeps = 2000, .over = 1, .tolerance = 1e-10, .unsettled = 1e-10},
-                               SKIN = {.sweeps = 1000, .over = 1, .tolerance = 1e-5, .unsettled = 1e-3};
-enum { DEPENDENT_SWEEPS = 240 };
-static const double OVER = 1.6;
+/* The end of the sweeps: of contact points, whose forces are the figure, and of the skin; without and with
+ * rows that depend on others. */
+static const sf_contact_sweeps CONTACT[] = {{2000, 1, 1e-10, 1e-10}, {2000, 1, 1e-5, 1e-3}},
+                               SKIN[] = {{1000, 1, 1e-5, 1e-3}, {240, 1.6, 1e-5, 1e-3}};
 
 /* ---- prepare ---- */
 
@@ -95,19 +92,14 @@ static sf_contact_pair last_pair(const sf_scene *c, int64_t p, int64_t partner) 
         sf_body_gap(&c->body[q.body], x, &q.gap, q.normal);
     } else {
         double apart[3];
-        sf_facet_normal(c, partner, q.normal);
+        sf_face_normal(c->at->position, &c->skin->facet[3 * partner], q.normal);
         sf_unit3(q.normal);
         sf_pair_relative(&q, c->at->position, apart);
-        q.gap = sf_dot3(apart, q.normal);
+        q.depth = -sf_dot3(apart, q.normal);
         if (q.body == SF_BODY_PAD && q.friction > 0)
             sf_pair_lean(c, &c->skin->facet[3 * partner], &q);
     }
     return q;
-}
-
-static void add_pair(const sf_scene *c, sf_contact_system *w) {
-    c->at->depth = fmax(c->at->depth, w->pair[w->count].depth);
-    sf_contact_add(w);
 }
 
 /* Books the last step's pair of a point, finds that of this step, and carries its force over. `passed`:
@@ -143,20 +135,8 @@ static void find_pair(const sf_scene *c, int64_t p, sf_contact_system *w, sf_con
         memset(q, 0, 3 * sizeof *q);
         return;
     }
-    add_pair(c, w);
-    if (p >= c->skin->nodes) {
-        w->over = OVER;
-        w->sweeps = DEPENDENT_SWEEPS;
-    }
-}
-
-/* Adds the pairs of edges, whose forces begin at zero. */
-static void find_edges(const sf_scene *c, double (*force)[3], sf_contact_system *w) {
-    int64_t count = sf_pair_edges(c, &w->pair[w->count]);
-    for (int64_t k = 0; k < count; k++) {
-        w->pair[w->count].force = memset(force[k], 0, sizeof force[k]);
-        add_pair(c, w);
-    }
+    sf_contact_add(w);
+    w->is_dependent |= p >= c->skin->nodes; /* centroids */
 }
 
 static sf_status fail_passed(const sf_scene *c, const sf_contact_pair *pair, sf_error *err) {
@@ -205,13 +185,14 @@ static void load_points(const sf_contact_pair *pair, sf_contact_points *at) {
 }
 
 /* Forces of the pairs on coefficients and bodies, and their work; the first `points` are those of points, the
- * others of edges. */
+ * others of edges and corners. */
 static void store(const sf_scene *c, const sf_contact_system *w, int64_t points) {
     bool loads = c->response && c->skin->faces > 0;
     if (loads)
         memset(c->at->load, 0, 3 * (size_t)c->skin->count * sizeof *c->at->load);
     for (int64_t a = 0; a < w->count; a++) {
         const sf_contact_pair *pair = &w->pair[a];
+        c->at->depth = fmax(c->at->depth, pair->depth);
         if (!(sf_dot3(pair->force, pair->normal) > 0))
             continue;
         sf_contact_apply(w, pair, c->state->force);
@@ -225,10 +206,8 @@ static void store(const sf_scene *c, const sf_contact_system *w, int64_t points)
 }
 
 static sf_status solve(const sf_scene *c, sf_error *err) {
-    static const char purpose[] = "pairs in contact";
     sf_state *s = c->state;
     sf_contact_points *at = c->at;
-    const sf_skin *skin = c->skin;
     double dt_v = 0.5 * (s->dt_old + s->dt);
     bool due = sf_broad_is_due(c);
     SF_BY_ALL_THREADS(at->near_count > SF_FEW_POINTS, move_points(c, dt_v));
@@ -237,17 +216,16 @@ static sf_status solve(const sf_scene *c, sf_error *err) {
     if (!c->response) {
         measure_travel(at);
         memset(s->contact_push, 0, 3 * (size_t)c->model->node_count * sizeof *s->contact_push);
-        sf_faces_turn(c);
+        for (int k = 0; k < SF_SHAPES; k++)
+            if (sf_shapes[k]->turn)
+                sf_shapes[k]->turn(c);
     }
-    int64_t most = skin->count + skin->sharp_count + sf_sharp_room(c->sharp, skin);
-    double(*edge_force)[3] =
-        sf_workspace_take(&at->work.edge_force, skin->sharp_count, sizeof *edge_force, purpose, err);
+    int64_t most = c->skin->count;
+    for (int k = 0; k < SF_SHAPES; k++)
+        most += sf_shapes[k]->most ? sf_shapes[k]->most(c) : 0;
     sf_contact_pair passed = {.node = -1};
-    sf_contact_system w = c->response ? CONTACT : SKIN;
-    w.rows = &skin->rows;
-    w.push = s->contact_push;
-    w.shift = s->dt * dt_v;
-    w.pair = sf_workspace_take(&at->work.pair, most, sizeof *w.pair, purpose, err);
+    sf_contact_system w = {.rows = &c->skin->rows, .push = s->contact_push, .shift = s->dt * dt_v};
+    w.pair = sf_workspace_take(&at->work.pair, most, sizeof *w.pair, "pairs in contact", err);
     SF_TRY(err->status);
     at->depth = 0;
     for (int64_t k = 0; k < at->close_count; k++)
@@ -255,17 +233,10 @@ static sf_status solve(const sf_scene *c, sf_error *err) {
     if (passed.node >= 0)
         return fail_passed(c, &passed, err);
     int64_t points = w.count;
-    find_edges(c, edge_force, &w);
-    int64_t edges = w.count;
-    if (c->sharp->is_there)
-        SF_TRY(sf_sharp_add(c, &w, err));
-    if (w.count > edges) {
-        w.over = c->response ? 1 : OVER;
-        w.sweeps = c->response ? CONTACT.sweeps : DEPENDENT_SWEEPS;
-        w.tolerance = SKIN.tolerance;
-        w.unsettled = SKIN.unsettled;
-    }
-    s->contact_unsettled += !sf_contact_relax(&w);
+    for (int k = 0; k < SF_SHAPES; k++)
+        if (sf_shapes[k]->add)
+            SF_TRY(sf_shapes[k]->add(c, &w, err));
+    s->contact_unsettled += !sf_contact_relax(&w, &(c->response ? CONTACT : SKIN)[w.is_dependent]);
     store(c, &w, points);
     sf_contact_clear(&w);
     return SF_OK;

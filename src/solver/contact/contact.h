@@ -3,11 +3,9 @@
  * start (pairs with the forces of the last step), solve (contact/solve.h), store (forces, ledger). First the
  * skin with itself, its mirror image, planes and supports, then the contact points with missile and anvil.
  *
- * Without these forces the gap of a pair at the next time would be g; the forces q on the point, and -q
- * shared among the points of its partner, are those for which no gap is negative, none pulls, and Coulomb's
- * law holds. Momentum and angular momentum hold: forces along the normal are on one line, and sf_pair_lean
- * takes up the moment of friction. The energy lost is the impact energy of the surface points that are caught
- * up with. */
+ * A force q acts on the point, and -q is shared among the points of its partner. Momentum and angular
+ * momentum hold: forces along the normal are on one line, and sf_pair_lean takes up the moment of friction.
+ * The energy lost is the impact energy of the surface points that are caught up with. */
 #pragma once
 #include "solver/operators.h"
 #include "solver/state.h"

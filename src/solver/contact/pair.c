@@ -23,7 +23,7 @@ static void set_lean(sf_contact_pair *q, int32_t node, const double lean[3]) {
     memcpy(q->lean[k], lean, sizeof q->lean[k]);
 }
 
-/* The lean of a node is gap times the gradient of its share, as a weight of the triangle n, less the part
+/* The lean of a node is the gap times the gradient of its share, as a weight of the triangle n, less the part
  * that answers forces along the normal. */
 void sf_pair_lean(const sf_scene *c, const int32_t n[3], sf_contact_pair *q) {
     const double *x = c->at->position;
@@ -38,8 +38,21 @@ void sf_pair_lean(const sf_scene *c, const int32_t n[3], sf_contact_pair *q) {
         sf_cross3(own, side[k], lean);
         double back = sf_dot3(lean, q->normal) / across;
         for (int r = 0; r < 3; r++)
-            lean[r] = q->gap / square * (lean[r] - back * own[r]);
+            lean[r] = -q->depth / square * (lean[r] - back * own[r]);
         set_lean(q, n[k], lean);
+    }
+}
+
+bool sf_pair_closes(sf_contact_pair *q, double back) {
+    q->gap = fmax(q->gap, -back);
+    return q->gap + sf_dot3(q->step, q->normal) < 0;
+}
+
+void sf_pair_rub(const sf_scene *c, const int32_t *node, sf_contact_pair *q) {
+    q->friction = sf_pair_friction(c, q);
+    if (q->friction > 0 && node) {
+        sf_pair_lean(c, node, q);
+        sf_pair_relative(q, c->at->step, q->step);
     }
 }
 

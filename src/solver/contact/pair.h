@@ -44,7 +44,7 @@ void sf_pair_relative(const sf_contact_pair *pair, const double *field, double o
 
 /* Friction acts on the point and on its partner `gap` apart along the normal. This gives three nodes of the
  * pair, which are on no line, the leans by which forces along the normal take up that moment: then angular
- * momentum holds, and the relative motion is that of one place. Needs parts, normal and gap. */
+ * momentum holds, and the relative motion is that of one place. Needs parts, normal and depth. */
 void sf_pair_lean(const sf_scene *scene, const int32_t node[3], sf_contact_pair *pair);
 
 /* Finds where two edges u and v (m) cross, seen along the common perpendicular of their lines: its unit
@@ -52,6 +52,12 @@ void sf_pair_lean(const sf_scene *scene, const int32_t node[3], sf_contact_pair 
  * v. False if the sine of the angle between them is below `least`. */
 bool sf_pair_cross(const double u[3], const double v[3], const double between[3], double least, double n[3],
                    double place[2]);
+
+/* Takes at most `back` (m) of a depth back in the step: sets `gap`. Returns whether the pair closes in it. */
+bool sf_pair_closes(sf_contact_pair *pair, double back);
+
+/* Finds friction of a pair and, with three nodes, its leans. */
+void sf_pair_rub(const sf_scene *scene, const int32_t *node, sf_contact_pair *pair);
 
 /* Turns the force of the last step to the normal of the pair, as that with which its sweeps begin. */
 void sf_pair_warm(sf_contact_pair *pair, const double old[3]);
@@ -68,6 +74,11 @@ int sf_pair_body(const sf_scene *scene, int64_t point, int64_t partner);
 
 /* Lists the nodes of a pair and their shares. */
 void sf_pair_list_parts(const sf_skin *skin, sf_contact_pair *pair);
+
+/* Returns the depth (m) beyond which there is no pair, of one that is new or goes on, at this spacing (m). */
+static inline double sf_shape_limit(const sf_shape *shape, bool goes_on, double size) {
+    return (goes_on ? shape->deepest : shape->entry) * size;
+}
 
 /* Returns false for a pair of the pad with itself that is only watched. */
 bool sf_pair_acts(const sf_scene *scene, const sf_contact_pair *pair);

@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes and bodies. All that a point of the pad may touch is a body of one of them: the missile is a sphere
- * cap or a surface of triangles, the anvil and the symmetry planes are planes, supports, other layers and the
- * pad itself are faces. The row of a shape says which points are near, and how gap and
- * normal are found; the lists of points near a face are those of the whole skin (contact/broad.c). */
+/* Shapes and bodies. All that the pad may touch is a body of one of them: the missile is a sphere cap or a
+ * surface of triangles, the anvil and the symmetry planes are planes, supports, other layers and the pad
+ * itself are faces and edges. The row of a shape holds what contact does with it in the order of a step:
+ * bodies are made, candidates listed, pairs found, each within the limits of the row. What a row has no use
+ * for is NULL. A new shape is a file with its row, and its line in the table (contact/shape.c). */
 #pragma once
 #include "model/model.h"
 
 typedef struct sf_contact_pair sf_contact_pair; /* contact/pair.h */
-typedef struct sf_scene sf_scene;
+typedef struct sf_scene sf_scene;               /* likewise */
+struct sf_listing;                              /* contact/listing.h */
+struct sf_contact_system;                       /* contact/solve.h */
 
 /* Bodies; supports are numbered from SF_BODY_SUPPORT on. */
 enum {
@@ -29,26 +32,53 @@ typedef struct sf_body {
     void *data;                   /* of the shape; owned */
 } sf_body;
 
+/* Triangles turned outwards; borrowed from the model. */
+typedef struct sf_shape_triangles {
+    int64_t node_count, count;
+    const double *position;  /* [node_count][3] m */
+    const int32_t *triangle; /* [count][3] */
+} sf_shape_triangles;
+
 typedef struct sf_shape {
-    /* Makes the data of the missile's shape for points of the spacing `reach` (m). */
-    sf_status (*build)(const sf_model *model, double reach, void **data, sf_error *err);
+    /* Makes the data of a body for points of the spacing `reach` (m); NULL if the model has no such body. */
+    sf_status (*build)(const sf_model *model, int body, double reach, void **data, sf_error *err);
     void (*release)(void *data);
     /* Returns whether the gap can be less than `margin` (m, from 0) at x; false is certain. */
     bool (*is_near)(const void *data, const double x[3], double margin);
     /* Finds the signed distance of x (negative inside) and the outward normal at the nearest place. Returns
      * false where the surface is out of reach, and beyond its rim. */
     bool (*gap)(const void *data, const double x[3], double *gap, double normal[3]);
+    /* Returns the triangles whose sharp edges press the pad between its nodes (contact/sharp.h). */
+    sf_shape_triangles (*triangles)(const sf_model *model);
+    /* Lists the candidates of points, or of `add`, and marks the points that these need. */
+    sf_status (*list)(const sf_scene *scene, struct sf_listing *listing, sf_error *err);
+    /* Finds the normals that pairs need, of the skin as it lies now. */
+    void (*turn)(const sf_scene *scene);
     /* Finds the pair of a point and a partner; false: they do not face each other. */
     bool (*meet)(const sf_scene *scene, int64_t point, int64_t partner, sf_contact_pair *out);
+    /* Adds the pairs that are not those of points to the system; `most`: how many in a step. */
+    sf_status (*add)(const sf_scene *scene, struct sf_contact_system *system, sf_error *err);
+    int64_t (*most)(const sf_scene *scene);
     double entry, deepest; /* of the spacing: deepest gap of a pair that is new, and of one that goes on */
-    double back;           /* m s-1, at which a depth of the skin is taken back at most */
+    double back;           /* m s-1, at which a depth is taken back at most */
 } sf_shape;
 
-/* The table. A new row is a file and its line here; that of a missile has a place in the list of shapes.c. */
-extern const sf_shape sf_shape_sphere;  /* an exact cap */
-extern const sf_shape sf_shape_surface; /* rigid triangles */
-extern const sf_shape sf_shape_plane;   /* normal to an axis */
-extern const sf_shape sf_shape_face;    /* faces of the pad, and of supports */
+/* The table. */
+extern const sf_shape sf_shape_plane,  /* normal to an axis */
+    sf_shape_sphere, sf_shape_surface, /* an exact cap, and rigid triangles */
+    sf_shape_face, sf_shape_edge,      /* of the pad, and of supports */
+    sf_shape_sharp;                    /* sharp edges of rigid triangles */
+enum { SF_SHAPES = 6 };
+extern const sf_shape *const sf_shapes[SF_SHAPES];
+
+/* Returns the shape of a body of the model, and its triangles, none if it has no sharp edges. */
+const sf_shape *sf_shape_of(const sf_model *model, int body);
+sf_shape_triangles sf_shape_triangles_of(const sf_model *model, int body);
+
+/* Makes a body of the model that is no part of the skin, for contact points of its largest spacing; *body is
+ * empty if the model has none. */
+sf_status sf_body_build(const sf_model *model, int number, sf_body *body, sf_error *err);
+void sf_body_free(sf_body *body);
 
 static inline bool sf_body_is_near(const sf_body *body, const double x[3], double margin) {
     return body->shape->is_near(body->data, x, margin);

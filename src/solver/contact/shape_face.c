@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Faces of the pad and of supports. A node touches a face only if it comes from outside: one that lies deeper
  * behind a face than it may, as behind the other side of a thin wall, does not see it. */
-#include "solver/contact/shape_face.h"
+#include "solver/contact/listing.h"
 
 static const double OPPOSED = -0.5; /* largest cosine of the normals of a node and the face that it touches */
 static const double EDGE = 0.05;    /* of a face, in its barycentric coordinates: it reaches so far beyond */
@@ -9,11 +9,115 @@ static const double EDGE = 0.05;    /* of a face, in its barycentric coordinates
  * zero by EDGE, and for quadrangles WARP spacings more, by which both cuts may differ. */
 static const double SPREAD = 3, WARP = 0.5;
 
+static const double FACING = -0.7; /* largest cosine, at rest, of neighbours that look at each other */
+
+/* ---- candidates ---- */
+
+/* True if one of the sides of node p looks at the facet from rest on: at a corner of a slit the mean of their
+ * normals looks past the wall beyond. */
+static bool looks_at(const sf_skin *skin, int64_t p, int64_t f) {
+    const double *facing = &skin->facet_normal[3 * f];
+    bool looks = skin->next_side[p] < 0 && sf_dot3(&skin->normal[3 * p], facing) < FACING;
+    for (int64_t e = skin->ring_ptr[p]; e < skin->ring_ptr[p + 1] && skin->next_side[p] >= 0; e++)
+        looks = looks || sf_dot3(&skin->facet_normal[3 * (int64_t)skin->ring[e]], facing) < FACING;
+    return looks;
+}
+
+/* A facet of the pad is no candidate of a point on one that meets it, but where it looks at the node from
+ * rest on, as those beside the tip of a slit do: a crease of a smooth surface or of a corner that is narrower
+ * lies below the resolution of the cloud, and the foam's own stress keeps its sides apart. */
+static bool is_candidate(const sf_skin *skin, int64_t p, int64_t f) {
+    bool beside = false;
+    for (int k = 0; k < 3; k++)
+        if (skin->facet[3 * f + k] == p)
+            return false;
+    for (int64_t e = skin->ring_ptr[p]; e < skin->ring_ptr[p + 1] && !beside; e++)
+        beside = sf_skin_facets_meet(skin, skin->ring[e], f);
+    return !beside || (p < skin->nodes && looks_at(skin, p, f));
+}
+
+/* The nearest of facets, by distance (m). */
+typedef struct nearest {
+    int count, room;
+    int32_t facet[SF_SELF_CANDIDATES];
+    double distance[SF_SELF_CANDIDATES];
+    double left_out; /* m, distance of the nearest that has no place */
+} nearest;
+
+static void insert(nearest *n, int32_t facet, double distance) {
+    int k = n->count < n->room ? n->count++ : n->room;
+    if (k == n->room)
+        n->left_out = fmin(n->left_out, fmax(distance, n->distance[k - 1]));
+    if (k == n->room && distance >= n->distance[--k])
+        return;
+    for (; k > 0 && n->distance[k - 1] > distance; k--) {
+        n->distance[k] = n->distance[k - 1];
+        n->facet[k] = n->facet[k - 1];
+    }
+    n->distance[k] = distance;
+    n->facet[k] = facet;
+}
+
+/* Adds the facets across the gap between pad and support that node p can reach to its `count` candidates;
+ * what has no place makes the lists due earlier. */
+static int add_across(const sf_scene *c, int64_t p, const sf_listing *l, int count) {
+    bool rigid = sf_skin_is_rigid(c->skin, p);
+    int32_t first = rigid ? 0 : (int32_t)c->skin->faces;
+    nearest n = {.room = SF_SELF_CANDIDATES - count, .left_out = INFINITY};
+    const double *x = &c->at->position[3 * p];
+    int64_t found = sf_grid_query(rigid ? &l->pad : &l->support, x, l->reach, c->skin->facet_count, l->found);
+    for (int64_t k = 0; k < found; k++) {
+        double distance = sf_listing_distance(c, x, first + l->found[k]);
+        if (distance < l->reach)
+            insert(&n, first + l->found[k], distance);
+    }
+    memcpy(&c->at->candidate[SF_SELF_CANDIDATES * p + count], n.facet, (size_t)n.count * sizeof *n.facet);
+    c->at->room = fmin(c->at->room, n.left_out);
+    return count + n.count;
+}
+
+/* Keeps the candidates of a point, facets in reach, and marks it and the nodes of these if there are some. */
+static void choose_candidates(const sf_scene *c, int64_t p, const sf_listing *l) {
+    enum { MOST = 256, OF_PAD = SF_SELF_CANDIDATES / 2 };
+    const sf_skin *skin = c->skin;
+    int32_t *own = &c->at->candidate[SF_SELF_CANDIDATES * p], near[MOST];
+    bool across = skin->moving < skin->nodes, rigid = sf_skin_is_rigid(skin, p);
+    int count = 0, most = across && p < skin->nodes ? OF_PAD : SF_SELF_CANDIDATES;
+    int64_t found = (skin->alone && !skin->watched) || rigid
+                        ? 0
+                        : sf_grid_query(&l->pad, &c->at->position[3 * p], l->reach, MOST, near);
+    for (int64_t k = 0; k < found && k < MOST && count < most; k++)
+        if (is_candidate(skin, p, near[k]))
+            own[count++] = near[k];
+    if (across && !skin->passive[p])
+        count = add_across(c, p, l, count);
+    for (int k = 0; k < 3 * count; k++)
+        l->used[skin->facet[3 * (int64_t)own[k / 3] + k % 3]] = 1;
+    l->used[p] |= count > 0;
+    for (int k = 0; k < sf_skin_members(skin, p) && count > 0; k++)
+        l->used[sf_skin_member(skin, p, k)] = 1;
+    for (int k = count; k < SF_SELF_CANDIDATES; k++)
+        own[k] = SF_NO_PARTNER;
+}
+
+static sf_status list(const sf_scene *c, sf_listing *l, sf_error *err) {
+    if (c->response)
+        return SF_OK;
+    SF_TRY(sf_listing_facets(c, l, err));
+    for (int64_t p = 0; p < c->skin->count; p++)
+        choose_candidates(c, p, l);
+    return SF_OK;
+}
+
+/* ---- pairs ---- */
+
 static double *side_normal(const sf_scene *c, int64_t f, int corner) {
     return &c->at->side[3 * (int64_t)c->skin->side[3 * f + corner]];
 }
 
-void sf_faces_turn(const sf_scene *c) {
+/* Finds the outward normals of the sides of the points that may touch, weighted by the areas of their facets;
+ * of a centroid the mean of its nodes'. */
+static void turn(const sf_scene *c) {
     const sf_skin *skin = c->skin;
     double *normal = c->at->side;
     for (int64_t k = 0; k < c->at->close_count; k++) {
@@ -24,7 +128,7 @@ void sf_faces_turn(const sf_scene *c) {
         for (int64_t e = skin->ring_ptr[p]; e < skin->ring_ptr[p + 1]; e++) {
             int64_t f = skin->ring[e];
             double one[3];
-            sf_facet_normal(c, f, one);
+            sf_face_normal(c->at->position, &skin->facet[3 * f], one);
             for (int corner = 0; corner < 3; corner++) {
                 double *of = side_normal(c, f, corner), *sum = node ? of : &normal[3 * p];
                 for (int r = 0; r < 3 && (!node || skin->facet[3 * f + corner] == p); r++)
@@ -162,4 +266,15 @@ static bool meet(const sf_scene *c, int64_t p, int64_t f, sf_contact_pair *q) {
     return p < skin->nodes || !matches(skin, q);
 }
 
-const sf_shape sf_shape_face = {.meet = meet, .entry = SF_CONTACT_ENTRY, .deepest = 0.5, .back = 0.1};
+static sf_shape_triangles triangles_of_supports(const sf_model *m) {
+    return (sf_shape_triangles){m->support_node_count, m->support_triangle_count, m->support_position,
+                                m->support_triangle};
+}
+
+const sf_shape sf_shape_face = {.triangles = triangles_of_supports,
+                                .list = list,
+                                .turn = turn,
+                                .meet = meet,
+                                .entry = SF_CONTACT_ENTRY,
+                                .deepest = 0.5,
+                                .back = 0.1};

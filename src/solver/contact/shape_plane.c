@@ -1,21 +1,37 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/contact/shape_plane.h"
-
+/* A plane that stops the pad: that of the anvil, if the pad may reach it, and those of symmetry, beyond which
+ * its mirror image is. */
 #include "solver/contact/pair.h"
 
-sf_status sf_plane_build(const sf_plane *plane, sf_body *body, sf_error *err) {
-    sf_plane *data = sf_alloc(err, 1, sizeof *data, "planes of contact");
-    if (data)
-        *data = *plane;
-    *body = (sf_body){&sf_shape_plane, data};
+typedef struct plane {
+    int axis;     /* of its normal */
+    double place; /* m, on that axis */
+    double side;  /* 1 or -1: the pad lies above or below it on that axis */
+} plane;
+
+static sf_status build(const sf_model *m, int body, double reach, void **data, sf_error *err) {
+    double low[3], high[3];
+    plane own = {.axis = body == SF_BODY_ANVIL ? 2 : body - SF_BODY_SYMMETRY_X, .side = 1};
+    sf_box3(m->node_count, m->position, low, high);
+    if (body == SF_BODY_ANVIL && !(m->anvil.depth > 0) && m->rest_count == 0)
+        return SF_OK;
+    if (body == SF_BODY_ANVIL)
+        own.place = sf_model_anvil_plane(m, high[2]);
+    else if (!sf_symmetry_plane(m, own.axis, &own.place))
+        return SF_OK;
+    else if (low[own.axis] < own.place - 0.5 * reach)
+        own.side = -1;
+    plane *kept = *data = sf_alloc(err, 1, sizeof *kept, "planes of contact");
+    if (kept)
+        *kept = own;
     return err->status;
 }
 
 static bool gap(const void *data, const double x[3], double *gap, double normal[3]) {
-    const sf_plane *plane = data;
-    *gap = plane->side * (x[plane->axis] - plane->place);
+    const plane *own = data;
+    *gap = own->side * (x[own->axis] - own->place);
     normal[0] = normal[1] = normal[2] = 0;
-    normal[plane->axis] = plane->side;
+    normal[own->axis] = own->side;
     return true;
 }
 
@@ -34,7 +50,8 @@ static bool meet(const sf_scene *c, int64_t p, int64_t partner, sf_contact_pair 
     return true;
 }
 
-const sf_shape sf_shape_plane = {.release = free,
+const sf_shape sf_shape_plane = {.build = build,
+                                 .release = free,
                                  .is_near = is_near,
                                  .gap = gap,
                                  .meet = meet,

@@ -7,7 +7,8 @@ typedef struct cap {
     double axis[3];                   /* unit vector from the centre to the middle of the cap */
 } cap;
 
-static sf_status build(const sf_model *m, double reach, void **data, sf_error *err) {
+static sf_status build(const sf_model *m, int body, double reach, void **data, sf_error *err) {
+    (void)body;
     (void)reach;
     cap *s = *data = sf_alloc(err, 1, sizeof *s, "sphere");
     SF_TRY(err->status);

@@ -84,7 +84,13 @@ static void release(void *data) {
     free(s);
 }
 
-static sf_status build(const sf_model *m, double reach, void **data, sf_error *err) {
+static sf_shape_triangles triangles_of(const sf_model *m) {
+    return (sf_shape_triangles){m->surface_node_count, m->surface_triangle_count, m->surface_position,
+                                m->surface_triangle};
+}
+
+static sf_status build(const sf_model *m, int body, double reach, void **data, sf_error *err) {
+    (void)body;
     int64_t triangles = m->surface_triangle_count;
     surface *s = *data = sf_alloc(err, 1, sizeof *s, "missile surface");
     SF_TRY(err->status);
@@ -169,6 +175,7 @@ const sf_shape sf_shape_surface = {.build = build,
                                    .release = release,
                                    .is_near = is_near,
                                    .gap = gap,
+                                   .triangles = triangles_of,
                                    .meet = sf_pair_missile,
                                    .entry = 0.1,
                                    .deepest = INFINITY};

@@ -9,8 +9,6 @@
 #include "model/ridges.h"
 #include "solver/contact/skin.h"
 
-struct sf_contact_system;
-
 /* The sharp parts of a body; constants. */
 typedef struct sf_sharp {
     bool is_there; /* false: nothing is sharp, or there are no faces to press */
@@ -19,16 +17,7 @@ typedef struct sf_sharp {
     const double *position; /* [..][3] m, of the body's surface at t = 0; borrowed */
 } sf_sharp;
 
-/* Finds the sharp parts of the missile, or of the supports. Release with sf_sharp_free. */
-sf_status sf_sharp_build(const sf_model *model, bool missile, const sf_skin *skin, sf_sharp *sharp,
-                         sf_error *err);
+/* Finds the sharp parts of a body of these triangles. Release with sf_sharp_free. */
+sf_status sf_sharp_build(const sf_model *model, const sf_shape_triangles *triangles, const sf_skin *skin,
+                         sf_sharp *sharp, sf_error *err);
 void sf_sharp_free(sf_sharp *sharp);
-
-/* Place (m) now of a node of the body. */
-void sf_sharp_node(const sf_scene *scene, int32_t node, double out[3]);
-
-/* Most pairs of a step; 0: nothing is sharp. */
-int64_t sf_sharp_room(const sf_sharp *sharp, const sf_skin *skin);
-
-/* Adds the pairs that close in the next step, with the forces of the last one, to those of the scene. */
-sf_status sf_sharp_add(const sf_scene *scene, struct sf_contact_system *system, sf_error *err);

@@ -158,20 +158,29 @@ static sf_skin begin(const sf_model *m) {
     return skin;
 }
 
+/* Marks how nodes are held, and the planes that may stop those of the pad: not if they are held there, or
+ * rest on the anvil already. */
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
-    SF_OWNED uint8_t *mark = sf_alloc(err, m->node_count, 1, "skin of the pad");
-    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->held, skin->count), SF_ROOM(skin->rests, skin->count));
-    for (int64_t k = 0; err->status == SF_OK && k < m->fixed_count; k++)
-        mark[m->fixed_node[k]] = m->fixed_mask[k];
-    for (int64_t k = 0; err->status == SF_OK && k < m->rest_count; k++)
-        mark[m->rest_node[k]] |= 8;
-    for (int64_t p = 0; err->status == SF_OK && p < skin->moving; p++) {
-        skin->held[p] = mark[skin->node[p]] & 7;
-        skin->rests[p] = mark[skin->node[p]] >> 3;
+    SF_OWNED uint8_t *rests = sf_alloc(err, m->node_count, 1, "skin of the pad");
+    SF_OWNED uint8_t *held = sf_alloc(err, m->node_count, 1, "skin of the pad");
+    SF_TRY(SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->held, skin->count),
+                        SF_ROOM(skin->touches, skin->count)));
+    for (int64_t k = 0; k < m->fixed_count; k++)
+        held[m->fixed_node[k]] = m->fixed_mask[k];
+    for (int64_t k = 0; k < m->rest_count; k++)
+        rests[m->rest_node[k]] = 1;
+    for (int64_t p = 0; p < skin->nodes; p++) {
+        bool moves = p < skin->moving;
+        skin->held[p] = moves ? held[skin->node[p]] : (uint8_t)sf_skin_planes_at(skin, &skin->rest[3 * p]);
+        if (!moves || skin->alone)
+            continue;
+        bool anvil = m->anvil.depth > 0 && !(skin->held[p] & SF_FIX_Z) && !rests[skin->node[p]];
+        skin->touches[p] = (uint8_t)(anvil << SF_BODY_ANVIL);
+        for (int r = 0; r < 2; r++)
+            if (!isnan(skin->plane[r]) && !(skin->held[p] >> r & 1))
+                skin->touches[p] |= (uint8_t)(1 << (SF_BODY_SYMMETRY_X + r));
     }
-    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->nodes; p++)
-        skin->held[p] = (uint8_t)sf_skin_planes_at(skin, &skin->rest[3 * p]);
-    return err->status;
+    return SF_OK;
 }
 
 /* The symmetry plane that the line lies in, 1 normal to x or 2 to y, beyond which its one face goes on; 0:
@@ -199,17 +208,17 @@ static bool is_convex(const sf_skin *skin, const int32_t line[4], int64_t one, i
 }
 
 static sf_status alloc_lines(sf_skin *skin, int64_t most, sf_error *err) {
-    SF_TRY(SF_ALLOC_ALL(err, "edges of the pad", SF_ROOM(skin->line, 4 * most), SF_ROOM(skin->is_sharp, most),
+    SF_TRY(SF_ALLOC_ALL(err, "edges of the pad", SF_ROOM(skin->line, 4 * (most + 1)),
                         SF_ROOM(skin->line_of, 3 * skin->facet_count)));
     memset(skin->line_of, -1, 3 * (size_t)skin->facet_count * sizeof *skin->line_of);
     return SF_OK;
 }
 
-/* Lists the edges of two faces; in a symmetry plane the second one is the mirror image of the first. */
-static sf_status list_lines(sf_skin *skin, sf_error *err) {
+/* Lists the edges of two faces that are sharp, or those that are not; in a symmetry plane the second face is
+ * the mirror image of the first. */
+static void list_lines_if(sf_skin *skin, const sf_half_edge *half, bool sharp) {
+    bool parts = skin->facet_normal && !skin->watched;
     int64_t count = 3 * skin->faces;
-    SF_OWNED sf_half_edge *half = sf_half_edges(skin->faces, skin->facet, err);
-    SF_TRY(alloc_lines(skin, count, err));
     for (int64_t k = 0, end; k < count; k = end) {
         end = sf_half_edges_end(half, k, count);
         int64_t one = half[k].slot, other = half[end - 1].slot;
@@ -220,11 +229,17 @@ static sf_status list_lines(sf_skin *skin, sf_error *err) {
         if (end != k + 2 && plane == 0)
             continue;
         line[3] = plane > 0 ? -plane : skin->facet[other - other % 3 + (other + 2) % 3];
-        skin->line_of[one] = (int32_t)skin->line_count;
-        skin->is_sharp[skin->line_count] =
-            skin->facet_normal && !skin->watched && is_convex(skin, line, one, other);
-        skin->sharp_count += skin->is_sharp[skin->line_count++];
+        if ((parts && is_convex(skin, line, one, other)) == sharp)
+            skin->line_of[one] = (int32_t)skin->line_count++;
     }
+}
+
+static sf_status list_lines(sf_skin *skin, sf_error *err) {
+    SF_OWNED sf_half_edge *half = sf_half_edges(skin->faces, skin->facet, err);
+    SF_TRY(alloc_lines(skin, 3 * skin->faces, err));
+    list_lines_if(skin, half, true);
+    skin->sharp_count = skin->line_count;
+    list_lines_if(skin, half, false);
     return SF_OK;
 }
 
@@ -301,14 +316,15 @@ static sf_status build_contact(const sf_model *m, sf_skin *skin, sf_error *err) 
     int64_t count = skin->count = skin->nodes = skin->moving = sf_model_points(m);
     skin->faces = skin->facet_count = m->contact_face_count;
     SF_TRY(SF_ALLOC_ALL(err, "contact points", SF_ROOM(skin->node, count), SF_ROOM(skin->rest, 3 * count),
-                        SF_ROOM(skin->size, count), SF_ROOM(skin->rests, count),
+                        SF_ROOM(skin->size, count), SF_ROOM(skin->touches, count),
                         SF_ROOM(skin->facet, 3 * skin->faces)));
     for (int64_t c = 0; c < count; c++) {
         int64_t node = skin->node[c] = (int32_t)sf_model_point_node(m, c);
         memcpy(&skin->rest[3 * c], &m->position[3 * node], 3 * sizeof *skin->rest);
         skin->size[c] = m->spacing[node];
-        skin->rests[c] = sf_model_point_rests(m, c);
-        skin->spacing = skin->rests[c] ? skin->spacing : fmin(skin->spacing, skin->size[c]);
+        bool rests = sf_model_point_rests(m, c);
+        skin->touches[c] = (uint8_t)(1 << (rests ? SF_BODY_ANVIL : SF_BODY_MISSILE));
+        skin->spacing = rests ? skin->spacing : fmin(skin->spacing, skin->size[c]);
     }
     for (int64_t k = 0; k < 3 * skin->faces; k++)
         skin->facet[k] = (int32_t)sf_list_find(m->contact_node, 0, m->contact_count, m->contact_face[k]);
@@ -326,7 +342,7 @@ sf_status sf_skin_build_contact(const sf_model *m, sf_skin *skin, sf_error *err)
 
 void sf_skin_free(sf_skin *skin) {
     sf_contact_rows_free(&skin->rows);
-    SF_CLEAR(skin, skin->node, skin->own, skin->side, skin->next_side, skin->line, skin->line_of,
-             skin->is_sharp, skin->rest, skin->size, skin->passive, skin->facet, skin->half, skin->ring_ptr,
-             skin->ring, skin->held, skin->rests, skin->normal, skin->facet_normal);
+    SF_CLEAR(skin, skin->node, skin->own, skin->side, skin->next_side, skin->line, skin->line_of, skin->rest,
+             skin->size, skin->passive, skin->facet, skin->half, skin->ring_ptr, skin->ring, skin->held,
+             skin->touches, skin->normal, skin->facet_normal);
 }

@@ -36,12 +36,12 @@ typedef struct sf_skin {
     int64_t line_count;
     int32_t *line;       /* [line_count][4] */
     int32_t *line_of;    /* [facet_count][3] from a facet's node to its next, at one facet; -1: none */
-    uint8_t *is_sharp;   /* [line_count] 1: it is convex, and sharp, in a pad that touches itself */
-    int64_t sharp_count; /* such edges */
+    int64_t sharp_count; /* the first lines: sharp and convex edges of a pad that touches itself */
     uint8_t *held;    /* [count] SF_FIX_* bits; of a support's node those of the symmetry planes it is on */
     uint8_t *passive; /* [count] 1: touches no support: on a flat part of one, or a centroid */
-    uint8_t *rests;   /* [count] 1: the anvil presses the node among the contact points */
-    double *normal;   /* [count][3] outward at rest, unit */
+    uint8_t
+        *touches;   /* [count] bits 1 << SF_BODY_* of the bodies that may touch the point, but for supports */
+    double *normal; /* [count][3] outward at rest, unit */
     double *facet_normal; /* [facet_count][3] likewise */
     bool alone;           /* the pad touches the supports only */
     bool watched;         /* its pairs with itself have no forces */
@@ -72,16 +72,16 @@ static inline int64_t sf_skin_member(const sf_skin *skin, int64_t point, int k) 
     return point < skin->nodes ? point : skin->facet[3 * (int64_t)skin->own[point - skin->nodes] + k];
 }
 
-/* True if a plane may stop the node: not if it is held there, or rests on the anvil already. */
-static inline bool sf_skin_is_stopped(const sf_skin *skin, int64_t node, int plane) {
-    int axis = plane == SF_BODY_ANVIL ? 2 : plane - SF_BODY_SYMMETRY_X;
-    return !skin->alone && node < skin->moving && !((skin->held[node] >> axis) & 1) &&
-           !(plane == SF_BODY_ANVIL && skin->rests[node]);
+static inline bool sf_skin_touches(const sf_skin *skin, int64_t point, int body) {
+    return skin->touches[point] >> body & 1;
 }
 
-/* Returns the body that a contact point may touch. */
-static inline int sf_skin_body(const sf_skin *contact, int64_t point) {
-    return contact->rests[point] ? SF_BODY_ANVIL : SF_BODY_MISSILE;
+/* True if both are facets, and have a node in common. */
+static inline bool sf_skin_facets_meet(const sf_skin *skin, int64_t one, int64_t other) {
+    for (int k = 0; k < 9 && one >= 0 && other >= 0; k++)
+        if (skin->facet[3 * one + k / 3] == skin->facet[3 * other + k % 3])
+            return true;
+    return false;
 }
 
 /* The vector from the first node of a line to its third node number k, 2 or 3. */

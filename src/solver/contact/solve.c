@@ -74,12 +74,12 @@ static void load(const sf_contact_system *w, const sf_contact_pair *pair, const 
 }
 
 /* One Gauss-Seidel update of the force of a pair; returns the size of its change. */
-static double relax_pair(const sf_contact_system *w, const sf_contact_pair *pair) {
+static double relax_pair(const sf_contact_system *w, double over, const sf_contact_pair *pair) {
     const double *n = pair->normal, friction = pair->friction;
     double *q = pair->force, moved[3], next[3], change[3], largest = 0, size = 0;
     sf_contact_motion(w, pair, moved);
     double across = sf_dot3(moved, n), old = sf_dot3(q, n),
-           p = fmax(0, old - w->over * (pair->gap + across) / pair->mobility);
+           p = fmax(0, old - over * (pair->gap + across) / pair->mobility);
     for (int r = 0; r < 3; r++) {
         next[r] =
             friction > 0 && p > 0 ? q[r] - old * n[r] - (moved[r] - across * n[r]) / pair->looseness : 0;
@@ -97,21 +97,21 @@ static double relax_pair(const sf_contact_system *w, const sf_contact_pair *pair
     return largest;
 }
 
-bool sf_contact_relax(sf_contact_system *w) {
+bool sf_contact_relax(sf_contact_system *w, const sf_contact_sweeps *sweeps) {
     double change = 0, largest = 0;
     for (int64_t a = 0; a < w->count; a++)
         load(w, &w->pair[a], w->pair[a].force);
-    for (int sweep = 0; sweep < w->sweeps; sweep++) {
+    for (int sweep = 0; sweep < sweeps->most; sweep++) {
         change = largest = 0;
         for (int64_t a = 0; a < w->count; a++) {
             const sf_contact_pair *pair = &w->pair[sweep % 2 ? w->count - 1 - a : a];
-            change = fmax(change, relax_pair(w, pair));
+            change = fmax(change, relax_pair(w, sweeps->over, pair));
             largest = fmax(largest, sf_dot3(pair->force, pair->normal));
         }
-        if (change <= w->tolerance * largest)
+        if (change <= sweeps->tolerance * largest)
             return true;
     }
-    return change <= w->unsettled * largest;
+    return change <= sweeps->unsettled * largest;
 }
 
 void sf_contact_apply(const sf_contact_system *w, const sf_contact_pair *pair, double *force) {
