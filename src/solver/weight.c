@@ -4,13 +4,13 @@
 #include "base/mat3.h"
 
 /* load [node_count] += Phi^T q0. */
-static void add_loads(const sf_model *m, const sf_contact_rows *rows, double *load) {
+static void add_loads(const sf_model *m, const sf_point_rows *rows, double *load) {
     for (int64_t c = 0; c < m->rest_count; c++)
         for (int64_t k = rows->ptr[m->contact_count + c]; k < rows->ptr[m->contact_count + c + 1]; k++)
             load[rows->node[k]] += rows->value[k] * m->rest_load[c];
 }
 
-sf_status sf_weight_build(const sf_model *m, const sf_contact_rows *rows, sf_weight *weight, sf_error *err) {
+sf_status sf_weight_build(const sf_model *m, const sf_point_rows *rows, sf_weight *weight, sf_error *err) {
     int64_t count = 0;
     memset(weight, 0, sizeof *weight);
     if (m->rest_count == 0)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
-#include "solver/contact/contact_rows.h"
+#include "solver/point_rows.h"
 
 /* The weight of a resting pad (theory, section "Anvil"; docs/adr/0019). At t = 0 the pad has settled: the
  * anvil's loads q0 (sf_model.rest_load) carry its weight. The reference configuration is that state, so that
@@ -11,8 +11,7 @@ typedef struct sf_weight {
     double (*pull)[3]; /* [count] N, constant */
 } sf_weight;
 
-sf_status sf_weight_build(const sf_model *model, const sf_contact_rows *rows, sf_weight *weight,
-                          sf_error *err);
+sf_status sf_weight_build(const sf_model *model, const sf_point_rows *rows, sf_weight *weight, sf_error *err);
 void sf_weight_free(sf_weight *weight);
 
 /* Adds the pull to force [node_count][3], N. */

@@ -49,7 +49,7 @@ void sf_layers_free(sf_layers *layers);
 int32_t sf_layers_copy(const sf_layers *layers, int32_t node, int layer);
 
 /* The heaviest of the nodes at one place that are tied altogether: it stands for all of them as the contact
- * point (solver/contact/contact_rows.h). Needs the model's masses. */
+ * point (solver/point_rows.h). Needs the model's masses. */
 int32_t sf_layers_heaviest(const sf_layers *layers, const sf_model *model, int32_t node);
 
 /* The cells and nodes of a layer with numbers of their own; sets are left out. On failure `*part` is empty.

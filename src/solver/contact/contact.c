@@ -58,7 +58,7 @@ static void measure_travel(sf_contact_points *at) {
 /* Accelerations by the last step's forces of missile and anvil into contact_push: a cover below the missile
  * would else meet the foam without the missile's load. All points are read, as the list of near points is
  * empty after a restart. */
-static void push_from_outside(const sf_model *m, const sf_contact_rows *rows, sf_state *s) {
+static void push_from_outside(const sf_model *m, const sf_point_rows *rows, sf_state *s) {
     const double *load = sf_state_load(m, s);
     for (int64_t c = 0; c < sf_model_points(m); c++) {
         const double *q = &load[3 * c];

@@ -138,10 +138,10 @@ bool sf_pair_cross(const double u[3], const double v[3], const double between[3]
     double square = sf_dot3(n, n);
     if (!(square > least * least * sf_dot3(u, u) * sf_dot3(v, v)))
         return false;
-    sf_cross3(between, v, moment);
-    place[0] = sf_dot3(moment, n) / square;
-    sf_cross3(between, u, moment);
-    place[1] = sf_dot3(moment, n) / square;
+    for (int k = 0; k < 2; k++) {
+        sf_cross3(between, k == 0 ? v : u, moment);
+        place[k] = sf_dot3(moment, n) / square;
+    }
     sf_unit3(n);
     return true;
 }

@@ -40,7 +40,7 @@ typedef struct sf_shape_triangles {
 } sf_shape_triangles;
 
 typedef struct sf_shape {
-    /* Makes the data of a body for points of the spacing `reach` (m); NULL if the model has no such body. */
+    /* Makes the data of a body for points of the spacing `reach` (m), if the model's body has this shape. */
     sf_status (*build)(const sf_model *model, int body, double reach, void **data, sf_error *err);
     void (*release)(void *data);
     /* Returns whether the gap can be less than `margin` (m, from 0) at x; false is certain. */
@@ -48,8 +48,8 @@ typedef struct sf_shape {
     /* Finds the signed distance of x (negative inside) and the outward normal at the nearest place. Returns
      * false where the surface is out of reach, and beyond its rim. */
     bool (*gap)(const void *data, const double x[3], double *gap, double normal[3]);
-    /* Returns the triangles whose sharp edges press the pad between its nodes (contact/sharp.h). */
-    sf_shape_triangles (*triangles)(const sf_model *model);
+    /* Returns the triangles of a body of this shape, whose sharp edges press the pad between its nodes. */
+    sf_shape_triangles (*triangles)(const sf_model *model, int body);
     /* Lists the candidates of points, or of `add`, and marks the points that these need. */
     sf_status (*list)(const sf_scene *scene, struct sf_listing *listing, sf_error *err);
     /* Finds the normals that pairs need, of the skin as it lies now. */
@@ -71,8 +71,7 @@ extern const sf_shape sf_shape_plane,  /* normal to an axis */
 enum { SF_SHAPES = 6 };
 extern const sf_shape *const sf_shapes[SF_SHAPES];
 
-/* Returns the shape of a body of the model, and its triangles, none if it has no sharp edges. */
-const sf_shape *sf_shape_of(const sf_model *model, int body);
+/* Returns the triangles of a body of the model, none if it has no sharp edges. */
 sf_shape_triangles sf_shape_triangles_of(const sf_model *model, int body);
 
 /* Makes a body of the model that is no part of the skin, for contact points of its largest spacing; *body is

@@ -266,7 +266,9 @@ static bool meet(const sf_scene *c, int64_t p, int64_t f, sf_contact_pair *q) {
     return p < skin->nodes || !matches(skin, q);
 }
 
-static sf_shape_triangles triangles_of_supports(const sf_model *m) {
+static sf_shape_triangles triangles_of_supports(const sf_model *m, int body) {
+    if (body < SF_BODY_SUPPORT)
+        return (sf_shape_triangles){0};
     return (sf_shape_triangles){m->support_node_count, m->support_triangle_count, m->support_position,
                                 m->support_triangle};
 }

@@ -12,9 +12,9 @@ typedef struct plane {
 static sf_status build(const sf_model *m, int body, double reach, void **data, sf_error *err) {
     double low[3], high[3];
     plane own = {.axis = body == SF_BODY_ANVIL ? 2 : body - SF_BODY_SYMMETRY_X, .side = 1};
-    sf_box3(m->node_count, m->position, low, high);
-    if (body == SF_BODY_ANVIL && !(m->anvil.depth > 0) && m->rest_count == 0)
+    if (body >= SF_BODY_MISSILE || (body == SF_BODY_ANVIL && !(m->anvil.depth > 0) && m->rest_count == 0))
         return SF_OK;
+    sf_box3(m->node_count, m->position, low, high);
     if (body == SF_BODY_ANVIL)
         own.place = sf_model_anvil_plane(m, high[2]);
     else if (!sf_symmetry_plane(m, own.axis, &own.place))

@@ -8,8 +8,9 @@ typedef struct cap {
 } cap;
 
 static sf_status build(const sf_model *m, int body, double reach, void **data, sf_error *err) {
-    (void)body;
     (void)reach;
+    if (body != SF_BODY_MISSILE || m->missile.shape != SF_SHAPE_SPHERE)
+        return SF_OK;
     cap *s = *data = sf_alloc(err, 1, sizeof *s, "sphere");
     SF_TRY(err->status);
     s->radius = m->missile.sphere_radius;

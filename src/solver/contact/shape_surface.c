@@ -84,26 +84,30 @@ static void release(void *data) {
     free(s);
 }
 
-static sf_shape_triangles triangles_of(const sf_model *m) {
+static sf_shape_triangles triangles_of(const sf_model *m, int body) {
+    if (body != SF_BODY_MISSILE || m->missile.shape != SF_SHAPE_SURFACE)
+        return (sf_shape_triangles){0};
     return (sf_shape_triangles){m->surface_node_count, m->surface_triangle_count, m->surface_position,
                                 m->surface_triangle};
 }
 
 static sf_status build(const sf_model *m, int body, double reach, void **data, sf_error *err) {
-    (void)body;
-    int64_t triangles = m->surface_triangle_count;
+    const sf_shape_triangles of = triangles_of(m, body);
+    int64_t triangles = of.count;
+    if (triangles == 0)
+        return SF_OK;
     surface *s = *data = sf_alloc(err, 1, sizeof *s, "missile surface");
     SF_TRY(err->status);
     s->reach = reach;
     s->triangles = triangles;
-    s->position = m->surface_position;
-    s->triangle = m->surface_triangle;
+    s->position = of.position;
+    s->triangle = of.triangle;
     SF_TRY(SF_ALLOC_ALL(err, "missile normals", SF_ROOM(s->normal, 3 * triangles),
                         SF_ROOM(s->edge_normal, 9 * triangles),
-                        SF_ROOM(s->vertex_normal, 3 * m->surface_node_count)));
+                        SF_ROOM(s->vertex_normal, 3 * of.node_count)));
     SF_TRY(SF_ALLOC_ALL(err, "missile rim", SF_ROOM(s->rim_edge, 3 * triangles),
-                        SF_ROOM(s->rim_vertex, m->surface_node_count)));
-    sf_box3(m->surface_node_count, s->position, s->low, s->high);
+                        SF_ROOM(s->rim_vertex, of.node_count)));
+    sf_box3(of.node_count, s->position, s->low, s->high);
     build_normals(s, triangles);
     SF_TRY(build_edge_normals(s, triangles, err));
     return build_grid(s, err);

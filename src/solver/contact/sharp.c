@@ -332,16 +332,15 @@ static sf_status add_pairs(const sf_scene *c, sf_contact_system *w, sf_error *er
                (key[last][0] < own[0] || (key[last][0] == own[0] && key[last][1] < own[1])))
             last++;
         bool on = last < room && key[last][0] == own[0] && key[last][1] == own[1];
-        double beyond[3];
-        sf_contact_pair spare, *q = count < room ? &w->pair[w->count] : &spare;
-        q->force = count < room ? &s->force[3 * count] : beyond;
-        if (!closes(c, &near[k], on, q))
-            continue;
+        sf_contact_pair *q = &w->pair[w->count];
         if (count == room)
             return SF_FAIL(err, SF_ERR_NUMERIC,
                            "more than %lld pairs of sharp edges touch: round the edges of the missile or "
                            "support, or take a finer mesh",
                            (long long)room);
+        q->force = &s->force[3 * count];
+        if (!closes(c, &near[k], on, q))
+            continue;
         sf_pair_warm(q, on ? old[last] : none);
         memcpy(&s->key[2 * count++], own, sizeof own);
         sf_contact_add(w);

@@ -4,60 +4,59 @@
 #include "base/mat3.h"
 #include "base/sets.h"
 
+static const char purpose[] = "skin of the pad";
+
 static sf_status number_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
-    skin->faces = m->skin_count;
-    skin->facet_count = m->skin_count + m->support_triangle_count;
-    skin->facet = sf_alloc(err, 3 * skin->facet_count, sizeof *skin->facet, "skin of the pad");
-    SF_TRY(err->status);
-    for (int64_t k = 0; k < 3 * m->skin_count; k++)
-        skin->facet[k] = m->skin_triangle[k];
-    skin->node =
-        sf_list_number(m->node_count, 3 * m->skin_count, skin->facet, &skin->moving, "skin of the pad", err);
-    for (int64_t k = 0; err->status == SF_OK && k < 3 * m->support_triangle_count; k++)
-        skin->facet[3 * m->skin_count + k] = (int32_t)skin->moving + m->support_triangle[k];
+    int64_t faces = skin->faces = m->skin_count;
+    skin->facet_count = faces + m->support_triangle_count;
+    SF_TRY(SF_ALLOC_ALL(err, purpose, SF_ROOM(skin->facet, 3 * skin->facet_count),
+                        SF_ROOM(skin->half, skin->facet_count)));
+    memcpy(skin->facet, m->skin_triangle, 3 * (size_t)faces * sizeof *skin->facet);
+    skin->node = sf_list_number(m->node_count, 3 * faces, skin->facet, &skin->moving, purpose, err);
+    for (int64_t k = 0; k < 3 * m->support_triangle_count; k++)
+        skin->facet[3 * faces + k] = (int32_t)skin->moving + m->support_triangle[k];
     skin->nodes = skin->moving + m->support_node_count;
     skin->count = skin->nodes + sf_model_skin_centroids(m);
-    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->own, (unsigned long)(skin->count - skin->nodes)),
-                 SF_ROOM(skin->half, skin->facet_count));
-    for (int64_t k = 1; err->status == SF_OK && k < m->skin_count; k++)
+    for (int64_t k = 1; k < faces; k++)
         if (sf_model_skin_is_quadrangle(m, k)) {
             skin->half[k - 1] = 1;
             skin->half[k] = 2;
         }
-    for (int64_t k = 0, used = 0; err->status == SF_OK && used < skin->count - skin->nodes; k++)
+    SF_TRY(SF_ALLOC_ALL(err, purpose, SF_ROOM(skin->own, (unsigned long)(skin->count - skin->nodes))));
+    for (int64_t k = 0, used = 0; used < skin->count - skin->nodes; k++)
         if (!skin->half[k])
             skin->own[used++] = (int32_t)k;
-    return err->status;
+    return SF_OK;
 }
 
 static sf_status place_nodes(const sf_model *m, sf_skin *skin, sf_error *err) {
-    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->rest, 3 * skin->count),
-                 SF_ROOM(skin->size, skin->count));
-    for (int64_t p = 0; err->status == SF_OK && p < skin->moving; p++) {
+    SF_TRY(
+        SF_ALLOC_ALL(err, purpose, SF_ROOM(skin->rest, 3 * skin->count), SF_ROOM(skin->size, skin->count)));
+    for (int64_t p = 0; p < skin->moving; p++) {
         memcpy(&skin->rest[3 * p], &m->position[3 * (int64_t)skin->node[p]], 3 * sizeof *skin->rest);
         skin->size[p] = m->spacing[skin->node[p]];
         skin->spacing = fmin(skin->spacing, skin->size[p]);
     }
-    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->nodes; p++) {
+    for (int64_t p = skin->moving; p < skin->nodes; p++) {
         memcpy(&skin->rest[3 * p], &m->support_position[3 * (p - skin->moving)], 3 * sizeof *skin->rest);
         skin->size[p] = skin->spacing;
     }
-    for (int64_t p = skin->nodes; err->status == SF_OK && p < skin->count; p++)
+    for (int64_t p = skin->nodes; p < skin->count; p++) {
+        skin->size[p] = INFINITY;
         for (int k = 0; k < 3; k++) {
             int64_t node = sf_skin_member(skin, p, k);
-            skin->size[p] = k == 0 ? skin->size[node] : fmin(skin->size[p], skin->size[node]);
+            skin->size[p] = fmin(skin->size[p], skin->size[node]);
             for (int r = 0; r < 3; r++)
                 skin->rest[3 * p + r] += skin->rest[3 * node + r] / 3;
         }
-    return err->status;
+    }
+    return SF_OK;
 }
 
 static sf_status list_rings(sf_skin *skin, sf_error *err) {
     int64_t corners = 3 * skin->facet_count;
     unsigned long all = (unsigned long)(corners + skin->count - skin->nodes);
-    SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->ring_ptr, skin->count + 2), SF_ROOM(skin->ring, all));
-    if (err->status != SF_OK)
-        return err->status;
+    SF_TRY(SF_ALLOC_ALL(err, purpose, SF_ROOM(skin->ring_ptr, skin->count + 2), SF_ROOM(skin->ring, all)));
     for (int64_t k = 0; k < corners; k++)
         skin->ring_ptr[skin->facet[k] + 2]++;
     for (int64_t p = 0; p < skin->count; p++)
@@ -71,24 +70,23 @@ static sf_status list_rings(sf_skin *skin, sf_error *err) {
 
 /* Normals at rest; those of a node are weighted by the areas. */
 static sf_status find_normals(sf_skin *skin, sf_error *err) {
-    skin->normal = sf_alloc(err, 3 * skin->count, sizeof(double), "skin of the pad");
-    skin->facet_normal = sf_alloc(err, 3 * skin->facet_count, sizeof(double), "skin of the pad");
-    for (int64_t f = 0; err->status == SF_OK && f < skin->facet_count; f++) {
-        const double *x[3];
+    SF_TRY(SF_ALLOC_ALL(err, purpose, SF_ROOM(skin->normal, 3 * skin->count),
+                        SF_ROOM(skin->facet_normal, 3 * skin->facet_count)));
+    for (int64_t f = 0; f < skin->facet_count; f++) {
         double *normal = &skin->facet_normal[3 * f];
-        sf_corners(skin->rest, &skin->facet[3 * f], x);
-        sf_triangle_normal(x[0], x[1], x[2], normal);
+        sf_face_normal(skin->rest, &skin->facet[3 * f], normal);
         for (int k = 0; k < 3; k++)
             for (int r = 0; r < 3; r++)
                 skin->normal[3 * (int64_t)skin->facet[3 * f + k] + r] += normal[r];
         sf_unit3(normal);
     }
-    for (int64_t p = skin->nodes; err->status == SF_OK && p < skin->count; p++)
-        memcpy(&skin->normal[3 * p], &skin->facet_normal[3 * (int64_t)skin->own[p - skin->nodes]],
-               3 * sizeof *skin->normal);
-    for (int64_t p = 0; err->status == SF_OK && p < skin->count; p++)
-        sf_unit3(&skin->normal[3 * p]);
-    return err->status;
+    for (int64_t p = 0; p < skin->count; p++)
+        if (p < skin->nodes)
+            sf_unit3(&skin->normal[3 * p]);
+        else
+            memcpy(&skin->normal[3 * p], &skin->facet_normal[3 * (int64_t)skin->own[p - skin->nodes]],
+                   3 * sizeof *skin->normal);
+    return SF_OK;
 }
 
 static int64_t corner_at(const sf_skin *skin, int64_t facet, int64_t node) {
@@ -113,8 +111,8 @@ static bool go_on_smoothly(const sf_skin *skin, int64_t f, int64_t g) {
 static sf_status part_sides(sf_skin *skin, sf_error *err) {
     enum { MOST_FACETS = 1000 };
     int64_t corners = 3 * skin->facet_count, sides = skin->count;
-    SF_OWNED int64_t *parent = sf_sets_alone(corners, "skin of the pad", err);
-    SF_TRY(SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->side, corners),
+    SF_OWNED int64_t *parent = sf_sets_alone(corners, purpose, err);
+    SF_TRY(SF_ALLOC_ALL(err, purpose, SF_ROOM(skin->side, corners),
                         SF_ROOM(skin->next_side, (unsigned long)(corners + sides))));
     memset(skin->next_side, -1, (size_t)(corners + sides) * sizeof *skin->next_side);
     memcpy(skin->side, skin->facet, (size_t)corners * sizeof *skin->side);
@@ -161,10 +159,9 @@ static sf_skin begin(const sf_model *m) {
 /* Marks how nodes are held, and the planes that may stop those of the pad: not if they are held there, or
  * rest on the anvil already. */
 static sf_status mark_held(const sf_model *m, sf_skin *skin, sf_error *err) {
-    SF_OWNED uint8_t *rests = sf_alloc(err, m->node_count, 1, "skin of the pad");
-    SF_OWNED uint8_t *held = sf_alloc(err, m->node_count, 1, "skin of the pad");
-    SF_TRY(SF_ALLOC_ALL(err, "skin of the pad", SF_ROOM(skin->held, skin->count),
-                        SF_ROOM(skin->touches, skin->count)));
+    SF_OWNED uint8_t *rests = sf_alloc(err, m->node_count, 1, purpose);
+    SF_OWNED uint8_t *held = sf_alloc(err, m->node_count, 1, purpose);
+    SF_TRY(SF_ALLOC_ALL(err, purpose, SF_ROOM(skin->held, skin->count), SF_ROOM(skin->touches, skin->count)));
     for (int64_t k = 0; k < m->fixed_count; k++)
         held[m->fixed_node[k]] = m->fixed_mask[k];
     for (int64_t k = 0; k < m->rest_count; k++)
@@ -279,15 +276,15 @@ static bool is_narrow(const sf_skin *skin, int64_t p) {
 }
 
 static sf_status mark_passive(sf_skin *skin, sf_error *err) {
-    skin->passive = sf_alloc(err, skin->count, 1, "skin of the pad");
-    for (int64_t p = skin->moving; err->status == SF_OK && p < skin->count; p++)
+    SF_TRY(SF_ALLOC_ALL(err, purpose, SF_ROOM(skin->passive, skin->count)));
+    for (int64_t p = skin->moving; p < skin->count; p++)
         skin->passive[p] = p >= skin->nodes || skin->held[p] != 0 || !is_narrow(skin, p);
-    return err->status;
+    return SF_OK;
 }
 
 /* The rows of the pad's nodes; those of the support and of the centroids are empty. */
 static sf_status build_rows(const sf_model *m, sf_skin *skin, sf_error *err) {
-    SF_TRY(sf_contact_rows_build(m, skin->moving, skin->node, &skin->rows, err));
+    SF_TRY(sf_point_rows_build(m, skin->moving, skin->node, &skin->rows, err));
     int64_t *ptr = realloc(skin->rows.ptr, ((size_t)skin->count + 1) * sizeof *ptr);
     if (!ptr)
         return SF_FAIL(err, SF_ERR_MEMORY, "out of memory for the skin of the pad");
@@ -330,7 +327,7 @@ static sf_status build_contact(const sf_model *m, sf_skin *skin, sf_error *err) 
         skin->facet[k] = (int32_t)sf_list_find(m->contact_node, 0, m->contact_count, m->contact_face[k]);
     if (skin->faces > 0)
         SF_TRY(m->axisymmetric ? list_sides(skin, err) : list_lines(skin, err));
-    return sf_contact_rows_build(m, count, skin->node, &skin->rows, err);
+    return sf_point_rows_build(m, count, skin->node, &skin->rows, err);
 }
 
 sf_status sf_skin_build_contact(const sf_model *m, sf_skin *skin, sf_error *err) {
@@ -341,7 +338,7 @@ sf_status sf_skin_build_contact(const sf_model *m, sf_skin *skin, sf_error *err)
 }
 
 void sf_skin_free(sf_skin *skin) {
-    sf_contact_rows_free(&skin->rows);
+    sf_point_rows_free(&skin->rows);
     SF_CLEAR(skin, skin->node, skin->own, skin->side, skin->next_side, skin->line, skin->line_of, skin->rest,
              skin->size, skin->passive, skin->facet, skin->half, skin->ring_ptr, skin->ring, skin->held,
              skin->touches, skin->normal, skin->facet_normal);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #pragma once
 #include "base/mat3.h"
-#include "solver/contact/contact_rows.h"
+#include "solver/point_rows.h"
 #include "solver/contact/shape.h"
 
 /* Points and faces of the pad in one solve of contact (contact/contact.h). Those of the skin may touch the
@@ -48,7 +48,7 @@ typedef struct sf_skin {
     double spacing;       /* m, smallest of the skin, or of the points that the missile may touch */
     double plane[2];      /* m, places of the symmetry planes normal to x and y; NAN: there is none */
     double on_plane;      /* m, how near to one a point lies in it */
-    sf_contact_rows rows;
+    sf_point_rows rows;
 } sf_skin;
 
 enum { SF_NO_FACES = -3 };

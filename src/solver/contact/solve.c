@@ -4,7 +4,7 @@
 #include "base/mat3.h"
 
 /* Adds the row of the pair over the coefficients, times `q`, to `out`; value: of the rows. */
-static void scatter(const sf_contact_rows *rows, const double *value, const sf_contact_pair *pair,
+static void scatter(const sf_point_rows *rows, const double *value, const sf_contact_pair *pair,
                     const double q[3], double *out) {
     for (int k = 0; k < pair->parts; k++) {
         int64_t p = pair->part[k];
@@ -18,7 +18,7 @@ static void scatter(const sf_contact_rows *rows, const double *value, const sf_c
 }
 
 /* The row of the pair times a field over the coefficients. */
-static void gather(const sf_contact_rows *rows, const sf_contact_pair *pair, const double *field,
+static void gather(const sf_point_rows *rows, const sf_contact_pair *pair, const double *field,
                    double out[3]) {
     for (int r = 0; r < 3; r++)
         out[r] = 0;

@@ -12,7 +12,7 @@
 
 /* The pairs of a step. */
 typedef struct sf_contact_system {
-    const sf_contact_rows *rows; /* of the points that are parts of the pairs */
+    const sf_point_rows *rows; /* of the points that are parts of the pairs */
     double *push; /* [n][3] m s-2, acceleration of the coefficients by the forces so far; zero before */
     double shift; /* s2, dt times the distance of the half steps */
     int64_t count;

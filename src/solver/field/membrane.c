@@ -52,14 +52,14 @@ sf_status sf_membrane_build(const sf_model *m, sf_membrane *b, sf_error *err) {
     if (m->membrane_count == 0)
         return SF_OK;
     if (number_nodes(m, b, err) != SF_OK || shape_triangles(m, b, err) != SF_OK ||
-        sf_contact_rows_build(m, b->count, b->node, &b->rows, err) != SF_OK ||
+        sf_point_rows_build(m, b->count, b->node, &b->rows, err) != SF_OK ||
         sf_stability_membrane(m, &b->load, err) != SF_OK)
         sf_membrane_free(b);
     return err->status;
 }
 
 void sf_membrane_free(sf_membrane *b) {
-    sf_contact_rows_free(&b->rows);
+    sf_point_rows_free(&b->rows);
     SF_CLEAR(b, b->node, b->triangle, b->gradient, b->volume);
 }
 

@@ -2,7 +2,7 @@
 /* The membrane on faces of the pad: triangles of constant strain between the physical positions of its nodes,
  * x = X + Phi d, whose forces act on the coefficients by the same rows (theory, section "Membranes"). */
 #pragma once
-#include "solver/contact/contact_rows.h"
+#include "solver/point_rows.h"
 
 enum { SF_MEMBRANE_ROW = 11 }; /* numbers of a triangle: forces on its nodes, N, energy, J, largest strain */
 
@@ -14,7 +14,7 @@ typedef struct sf_membrane {
         *gradient; /* [triangle_count][3][2] m-1, of the shape functions in axes of the undeformed triangle */
     double *volume; /* [triangle_count] m3 */
     double load;    /* s-2, bound on the square of its highest frequency, at rest */
-    sf_contact_rows rows;
+    sf_point_rows rows;
 } sf_membrane;
 
 sf_status sf_membrane_build(const sf_model *model, sf_membrane *membrane, sf_error *err);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/contact/contact_rows.h"
+#include "solver/point_rows.h"
 #include "base/sets.h"
 
 enum { COMPONENTS = 3 };
@@ -77,7 +77,7 @@ static double inertia(const sf_model *m, int32_t node) {
 }
 
 /* Entries of the point at `first`, written from `at` on if there is room for them; returns their end. */
-static int64_t put_row(const sf_model *m, const joined *j, int32_t first, sf_contact_rows *rows, int64_t at) {
+static int64_t put_row(const sf_model *m, const joined *j, int32_t first, sf_point_rows *rows, int64_t at) {
     double all = 0;
     int32_t node = first;
     do
@@ -94,7 +94,7 @@ static int64_t put_row(const sf_model *m, const joined *j, int32_t first, sf_con
     return at;
 }
 
-static void measure_rows(const sf_model *m, int64_t points, sf_contact_rows *rows) {
+static void measure_rows(const sf_model *m, int64_t points, sf_point_rows *rows) {
     for (int64_t c = 0; c < points; c++) {
         double sum = 0;
         for (int64_t k = rows->ptr[c]; k < rows->ptr[c + 1]; k++) {
@@ -105,8 +105,8 @@ static void measure_rows(const sf_model *m, int64_t points, sf_contact_rows *row
     }
 }
 
-sf_status sf_contact_rows_build(const sf_model *m, int64_t points, const int32_t *point,
-                                sf_contact_rows *rows, sf_error *err) {
+sf_status sf_point_rows_build(const sf_model *m, int64_t points, const int32_t *point, sf_point_rows *rows,
+                              sf_error *err) {
     joined j = {0};
     memset(rows, 0, sizeof *rows);
     rows->ptr = sf_alloc(err, points + 1, sizeof *rows->ptr, "contact rows");
@@ -123,10 +123,10 @@ sf_status sf_contact_rows_build(const sf_model *m, int64_t points, const int32_t
     }
     SF_FREE(j.parent[0], j.parent[1], j.parent[2], j.held, j.next);
     if (err->status != SF_OK)
-        sf_contact_rows_free(rows);
+        sf_point_rows_free(rows);
     return err->status;
 }
 
-void sf_contact_rows_free(sf_contact_rows *rows) {
+void sf_point_rows_free(sf_point_rows *rows) {
     SF_CLEAR(rows, rows->ptr, rows->node, rows->value, rows->by_mass);
 }
