@@ -38,66 +38,55 @@ static bool is_candidate(const sf_skin *skin, int64_t p, int64_t f) {
 
 /* The nearest of facets, by distance (m). */
 typedef struct nearest {
-    int count, room;
+    int count;
     int32_t facet[SF_SELF_CANDIDATES];
     double distance[SF_SELF_CANDIDATES];
     double left_out; /* m, distance of the nearest that has no place */
 } nearest;
 
-static void insert(nearest *n, int32_t facet, double distance) {
-    int k = n->count < n->room ? n->count++ : n->room;
-    if (k == n->room)
+static void insert(nearest *n, int64_t facet, double distance) {
+    int k = n->count < SF_SELF_CANDIDATES ? n->count++ : SF_SELF_CANDIDATES;
+    if (k == SF_SELF_CANDIDATES)
         n->left_out = fmin(n->left_out, fmax(distance, n->distance[k - 1]));
-    if (k == n->room && distance >= n->distance[--k])
+    if (k == SF_SELF_CANDIDATES && distance >= n->distance[--k])
         return;
     for (; k > 0 && n->distance[k - 1] > distance; k--) {
         n->distance[k] = n->distance[k - 1];
         n->facet[k] = n->facet[k - 1];
     }
     n->distance[k] = distance;
-    n->facet[k] = facet;
+    n->facet[k] = (int32_t)facet;
 }
 
-/* Adds the facets across the gap between pad and support that node p can reach to its `count` candidates;
- * what has no place makes the lists due earlier. */
-static int add_across(const sf_scene *c, int64_t p, const sf_listing *l, int count) {
-    bool rigid = sf_skin_is_rigid(c->skin, p);
-    int32_t first = rigid ? 0 : (int32_t)c->skin->faces;
-    nearest n = {.room = SF_SELF_CANDIDATES - count, .left_out = INFINITY};
-    const double *x = &c->at->position[3 * p];
-    int64_t found = sf_grid_query(rigid ? &l->pad : &l->support, x, l->reach, c->skin->facet_count, l->found);
-    for (int64_t k = 0; k < found; k++) {
-        double distance = sf_listing_distance(c, x, first + l->found[k]);
-        if (distance < l->reach)
-            insert(&n, first + l->found[k], distance);
-    }
-    memcpy(&c->at->candidate[SF_SELF_CANDIDATES * p + count], n.facet, (size_t)n.count * sizeof *n.facet);
-    c->at->room = fmin(c->at->room, n.left_out);
-    return count + n.count;
-}
-
-/* Keeps the candidates of a point, facets in reach, and marks it and the nodes of these if there are some. */
+/* Keeps the candidates of a point, the nearest facets in reach of pad and supports, and marks it and the
+ * nodes of these if there are some; facets that have no place make the lists due earlier. */
 static void choose_candidates(const sf_scene *c, int64_t p, const sf_listing *l) {
-    enum { MOST = 256, OF_PAD = SF_SELF_CANDIDATES / 2 };
     const sf_skin *skin = c->skin;
-    int32_t *own = &c->at->candidate[SF_SELF_CANDIDATES * p], near[MOST];
-    bool across = skin->moving < skin->nodes, rigid = sf_skin_is_rigid(skin, p);
-    int count = 0, most = across && p < skin->nodes ? OF_PAD : SF_SELF_CANDIDATES;
-    int64_t found = (skin->alone && !skin->watched) || rigid
-                        ? 0
-                        : sf_grid_query(&l->pad, &c->at->position[3 * p], l->reach, MOST, near);
-    for (int64_t k = 0; k < found && k < MOST && count < most; k++)
-        if (is_candidate(skin, p, near[k]))
-            own[count++] = near[k];
-    if (across && !skin->passive[p])
-        count = add_across(c, p, l, count);
-    for (int k = 0; k < 3 * count; k++)
+    const double *x = &c->at->position[3 * p];
+    int32_t *own = &c->at->candidate[SF_SELF_CANDIDATES * p];
+    bool rigid = sf_skin_is_rigid(skin, p), across = skin->moving < skin->nodes && !skin->passive[p];
+    const bool sees[2] = {rigid ? across : !skin->alone || skin->watched, !rigid && across};
+    nearest n = {.left_out = INFINITY};
+    for (int k = 0; k < 2; k++) {
+        int64_t first = k ? skin->faces : 0,
+                found = sees[k] ? sf_grid_query(k ? &l->support : &l->pad, x, l->reach, skin->facet_count,
+                                                l->found)
+                                : 0;
+        for (int64_t i = 0; i < found; i++) {
+            int64_t f = first + l->found[i];
+            double distance = is_candidate(skin, p, f) ? sf_listing_distance(c, x, f) : INFINITY;
+            if (distance < l->reach)
+                insert(&n, f, distance);
+        }
+    }
+    c->at->room = fmin(c->at->room, n.left_out);
+    for (int k = 0; k < SF_SELF_CANDIDATES; k++)
+        own[k] = k < n.count ? n.facet[k] : SF_NO_PARTNER;
+    for (int k = 0; k < 3 * n.count; k++)
         l->used[skin->facet[3 * (int64_t)own[k / 3] + k % 3]] = 1;
-    l->used[p] |= count > 0;
-    for (int k = 0; k < sf_skin_members(skin, p) && count > 0; k++)
+    l->used[p] |= n.count > 0;
+    for (int k = 0; k < sf_skin_members(skin, p) && n.count > 0; k++)
         l->used[sf_skin_member(skin, p, k)] = 1;
-    for (int k = count; k < SF_SELF_CANDIDATES; k++)
-        own[k] = SF_NO_PARTNER;
 }
 
 static sf_status list(const sf_scene *c, sf_listing *l, sf_error *err) {
