@@ -3,7 +3,7 @@
  * surface of triangles, the anvil and the symmetry planes are planes, supports, other layers and the pad
  * itself are faces and edges. The row of a shape holds what contact does with it in the order of a step:
  * bodies are made, candidates listed, pairs found, each within the limits of the row. What a row has no use
- * for is NULL. A new shape is a file with its row, and its line in the table (contact/shape.c). */
+ * for is NULL. A new shape is a file with its row, and its name in the table below. */
 #pragma once
 #include "model/model.h"
 
@@ -63,12 +63,13 @@ typedef struct sf_shape {
     double back;           /* m s-1, at which a depth is taken back at most */
 } sf_shape;
 
-/* The table. */
-extern const sf_shape sf_shape_plane,  /* normal to an axis */
-    sf_shape_sphere, sf_shape_surface, /* an exact cap, and rigid triangles */
-    sf_shape_face, sf_shape_edge,      /* of the pad, and of supports */
-    sf_shape_sharp;                    /* sharp edges of rigid triangles */
-enum { SF_SHAPES = 6 };
+/* The table: sf_shape_plane, normal to an axis; an exact cap of a sphere; rigid triangles; faces of pad and
+ * supports; sharp edges of the pad; sharp edges of rigid triangles. */
+#define SF_SHAPE_ROWS(X) X(plane) X(sphere) X(surface) X(face) X(edge) X(sharp)
+#define SF_SHAPE_DECLARE(name) extern const sf_shape sf_shape_##name;
+SF_SHAPE_ROWS(SF_SHAPE_DECLARE)
+#define SF_SHAPE_COUNT(name) +1
+enum { SF_SHAPES = SF_SHAPE_ROWS(SF_SHAPE_COUNT) };
 extern const sf_shape *const sf_shapes[SF_SHAPES];
 
 /* Returns the triangles of a body of the model, none if it has no sharp edges. */
