@@ -46,4 +46,5 @@ const sf_shape sf_shape_sphere = {.build = build,
                                   .gap = gap,
                                   .meet = sf_pair_missile,
                                   .entry = 0.1,
-                                  .deepest = INFINITY};
+                                  .deepest = INFINITY,
+                                  .back = INFINITY};

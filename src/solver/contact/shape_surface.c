@@ -182,4 +182,5 @@ const sf_shape sf_shape_surface = {.build = build,
                                    .triangles = triangles_of,
                                    .meet = sf_pair_missile,
                                    .entry = 0.1,
-                                   .deepest = INFINITY};
+                                   .deepest = INFINITY,
+                                   .back = INFINITY};
