@@ -72,8 +72,8 @@ static inline int64_t sf_skin_member(const sf_skin *skin, int64_t point, int k) 
     return point < skin->nodes ? point : skin->facet[3 * (int64_t)skin->own[point - skin->nodes] + k];
 }
 
-static inline bool sf_skin_touches(const sf_skin *skin, int64_t point, int body) {
-    return skin->touches[point] >> body & 1;
+static inline bool sf_skin_touches(const sf_skin *skin, int64_t point, int number) {
+    return skin->touches[point] >> number & 1;
 }
 
 /* True if both are facets, and have a node in common. */
