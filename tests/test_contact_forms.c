@@ -248,6 +248,32 @@ static void a_block_slides_on_a_block(void **state) {
     slide_on_a_block(1.37);
 }
 
+/* Blocks whose contact is only watched move through each other until one lies half a spacing behind the
+ * other's face; `finest`: spacing of a part elsewhere, of theirs. */
+static void pass_through_a_block(double finest) {
+    const fixture_block block = {.cells = {4, 4, 2 * HALF}, .spacing = 0.01};
+    sf_case c;
+    fixture f;
+    sf_error err = SF_ERROR_INIT;
+    loose_case(&c, 2, 0);
+    layers_under_plate(&c, &block, by_height, &f);
+    f.model.skin_watched = f.model.skin_alone = 1;
+    f.model.spacing[0] *= finest;
+    fixture_start(&f);
+    throw_layer(&f, 1, 0, -10 * DROP);
+    while (f.state.time < 10e-3 && sf_step_evaluate(&f.model, &f.operators, &f.state, &err) == SF_OK)
+        sf_step_advance(&f.model, &f.state);
+    print_message("%s\n", err.text);
+    assert_non_null(strstr(err.text, "the foam has passed through another face of the foam by 5"));
+    fixture_free(&f);
+}
+
+static void coarse_faces_are_watched_beside_fine_ones(void **state) {
+    (void)state;
+    pass_through_a_block(1);
+    pass_through_a_block(0.3);
+}
+
 /* Removes the cells of a void of 1 x 3 x 2 cells from a block. */
 static void open_void(const fixture_block *block, sf_mesh *mesh) {
     int64_t cells = 0, used = 0;
@@ -499,6 +525,7 @@ int main(void) {
         cmocka_unit_test(a_block_passes_through_a_support),
         cmocka_unit_test(a_loose_stack_falls_apart_when_it_is_lifted),
         cmocka_unit_test(a_block_slides_on_a_block),
+        cmocka_unit_test(coarse_faces_are_watched_beside_fine_ones),
         cmocka_unit_test(a_corner_of_a_slit_sees_the_wall_beyond),
         cmocka_unit_test(a_skin_with_a_third_half_is_refused),
         cmocka_unit_test(each_interface_has_its_own_friction),

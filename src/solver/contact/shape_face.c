@@ -59,7 +59,8 @@ static void insert(nearest *n, int64_t facet, double distance) {
 }
 
 /* Keeps the candidates of a point, the nearest facets in reach of pad and supports, and marks it and the
- * nodes of these if there are some; facets that have no place make the lists due earlier. */
+ * nodes of these if there are some; facets that have no place make the lists due earlier. The reach is not
+ * less than the depth at which a pair is known to have passed through, of a coarse point beside fine ones. */
 static void choose_candidates(const sf_scene *c, int64_t p, const sf_listing *l) {
     const sf_skin *skin = c->skin;
     const double *x = &c->at->position[3 * p];
@@ -67,15 +68,16 @@ static void choose_candidates(const sf_scene *c, int64_t p, const sf_listing *l)
     bool rigid = sf_skin_is_rigid(skin, p), across = skin->moving < skin->nodes && !skin->passive[p];
     const bool sees[2] = {rigid ? across : !skin->alone || skin->watched, !rigid && across};
     nearest n = {.left_out = INFINITY};
+    double reach = fmax(l->reach, 2 * sf_shape_limit(&sf_shape_face, true, skin->size[p]));
     for (int k = 0; k < 2; k++) {
         int64_t first = k ? skin->faces : 0,
-                found = sees[k] ? sf_grid_query(k ? &l->support : &l->pad, x, l->reach, skin->facet_count,
-                                                l->found)
-                                : 0;
+                found = sees[k]
+                            ? sf_grid_query(k ? &l->support : &l->pad, x, reach, skin->facet_count, l->found)
+                            : 0;
         for (int64_t i = 0; i < found; i++) {
             int64_t f = first + l->found[i];
             double distance = is_candidate(skin, p, f) ? sf_listing_distance(c, x, f) : INFINITY;
-            if (distance < l->reach)
+            if (distance < reach)
                 insert(&n, f, distance);
         }
     }
