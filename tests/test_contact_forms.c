@@ -296,8 +296,8 @@ static void open_void(const fixture_block *block, sf_mesh *mesh) {
     mesh->cell_count = cells;
 }
 
-/* Each node of a wall of a narrow void has the opposite face of the wall beyond among its candidates, also in
- * the corners, where floor and end wall join the two. */
+/* Each node of a wall of a narrow void has the opposite face of the wall beyond among its candidates, which
+ * ascend, also in the corners, where floor and end wall join the two. */
 static void a_corner_of_a_slit_sees_the_wall_beyond(void **state) {
     const fixture_block block = {.cells = {5, 5, 4}, .spacing = 0.01};
     sf_case c;
@@ -319,6 +319,7 @@ static void a_corner_of_a_slit_sees_the_wall_beyond(void **state) {
     for (int64_t p = 0; p < skin->moving; p++) {
         const double *x = &skin->rest[3 * p];
         bool sees = false;
+        int32_t before = -1;
         if (fabs(x[0] / block.spacing - 2) > 0.1 || x[1] < 0.9 * block.spacing ||
             x[1] > 4.1 * block.spacing || x[2] < 0.9 * block.spacing || x[2] > 3.1 * block.spacing)
             continue;
@@ -332,6 +333,8 @@ static void a_corner_of_a_slit_sees_the_wall_beyond(void **state) {
             }
             if (facet < 0)
                 break;
+            assert_true(facet > before);
+            before = facet;
         }
         if (!sees)
             fail_msg("(%g, %g, %g) mm does not see the wall", 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);

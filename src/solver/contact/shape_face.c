@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Faces of the pad and of supports. A node touches a face only if it comes from outside: one that lies deeper
  * behind a face than it may, as behind the other side of a thin wall, does not see it. */
+#include "base/sets.h"
 #include "solver/contact/listing.h"
 
 static const double OPPOSED = -0.5; /* largest cosine of the normals of a node and the face that it touches */
@@ -60,7 +61,10 @@ static void insert(nearest *n, int64_t facet, double distance) {
 
 /* Keeps the candidates of a point, the nearest facets in reach of pad and supports, and marks it and the
  * nodes of these if there are some; facets that have no place make the lists due earlier. The reach is not
- * less than the depth at which a pair is known to have passed through, of a coarse point beside fine ones. */
+ * less than the depth at which a pair is known to have passed through, of a coarse point beside fine ones.
+ * Faces of the pad that touch each other are in the order of their numbers, so that pairs do not depend on
+ * when the lists were made; those across the gap to a support are by distance, as of two supports side by
+ * side the nearer one is touched. */
 static void choose_candidates(const sf_scene *c, int64_t p, const sf_listing *l) {
     const sf_skin *skin = c->skin;
     const double *x = &c->at->position[3 * p];
@@ -82,8 +86,17 @@ static void choose_candidates(const sf_scene *c, int64_t p, const sf_listing *l)
         }
     }
     c->at->room = fmin(c->at->room, n.left_out);
-    for (int k = 0; k < SF_SELF_CANDIDATES; k++)
-        own[k] = k < n.count ? n.facet[k] : SF_NO_PARTNER;
+    int count = 0;
+    for (int k = 0; k < n.count; k++)
+        if (n.facet[k] < skin->faces)
+            own[count++] = n.facet[k];
+    if (!rigid)
+        qsort(own, (size_t)count, sizeof *own, sf_by_number);
+    for (int k = 0; k < n.count; k++)
+        if (n.facet[k] >= skin->faces)
+            own[count++] = n.facet[k];
+    for (; count < SF_SELF_CANDIDATES; count++)
+        own[count] = SF_NO_PARTNER;
     for (int k = 0; k < 3 * n.count; k++)
         l->used[skin->facet[3 * (int64_t)own[k / 3] + k % 3]] = 1;
     l->used[p] |= n.count > 0;
