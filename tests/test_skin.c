@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What contact takes from a model: the edges of the pad's faces, and the friction of each body. */
+/* What contact takes from a model: the edges of the pad's faces, the friction of each body, the side of a
+ * symmetry plane. */
 #include "solver/contact/pair.h"
 #include "solver/contact/skin.h"
 
@@ -77,10 +78,38 @@ static void each_body_has_its_friction(void **state) {
                 0.3);
 }
 
+/* The pad is on its side of a symmetry plane however narrow it is beside the spacing of its contact points.
+ */
+static void a_narrow_pad_is_on_its_side_of_the_plane(void **state) {
+    (void)state;
+    for (int side = -1; side <= 1; side += 2) {
+        double position[6] = {0, 0, 0, side * 0.2, 0, 0}, spacing[2] = {1, 1};
+        const double middle[3] = {side * 0.1, 0, 0};
+        int32_t fixed[1] = {0}, contact[1] = {1};
+        uint8_t mask[1] = {SF_FIX_X}, base[1] = {0};
+        const sf_model m = {.node_count = 2,
+                            .position = position,
+                            .spacing = spacing,
+                            .contact_count = 1,
+                            .contact_node = contact,
+                            .fixed_count = 1,
+                            .fixed_node = fixed,
+                            .fixed_mask = mask,
+                            .fixed_base = base};
+        double gap, normal[3];
+        sf_body plane;
+        sf_error err = SF_ERROR_INIT;
+        assert_int_equal(sf_body_build(&m, SF_BODY_SYMMETRY_X, &plane, &err), SF_OK);
+        assert_true(sf_body_gap(&plane, middle, &gap, normal) && gap > 0.09 && normal[0] == side);
+        sf_body_free(&plane);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_edge_on_the_axis_goes_on_beyond_the_plane_at_its_foam),
         cmocka_unit_test(each_body_has_its_friction),
+        cmocka_unit_test(a_narrow_pad_is_on_its_side_of_the_plane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

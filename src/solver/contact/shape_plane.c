@@ -10,6 +10,7 @@ typedef struct plane {
 } plane;
 
 static sf_status build(const sf_model *m, int body, double reach, void **data, sf_error *err) {
+    (void)reach;
     double low[3], high[3];
     plane own = {.axis = body == SF_BODY_ANVIL ? 2 : body - SF_BODY_SYMMETRY_X, .side = 1};
     if (body >= SF_BODY_MISSILE || (body == SF_BODY_ANVIL && !(m->anvil.depth > 0) && m->rest_count == 0))
@@ -19,7 +20,7 @@ static sf_status build(const sf_model *m, int body, double reach, void **data, s
         own.place = sf_model_anvil_plane(m, high[2]);
     else if (!sf_symmetry_plane(m, own.axis, &own.place))
         return SF_OK;
-    else if (low[own.axis] < own.place - 0.5 * reach)
+    else if (own.place - low[own.axis] > high[own.axis] - own.place)
         own.side = -1;
     plane *kept = *data = sf_alloc(err, 1, sizeof *kept, "planes of contact");
     if (kept)
