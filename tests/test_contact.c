@@ -264,8 +264,6 @@ static void sphere_and_its_triangles_give_the_same_drop(void **state) {
     assert_true(peak_of("missile.shape=surface", true) == surface);
 }
 
-/* A point that is free and deeper than a tenth of its spacing did not come through the surface: nothing
- * pushes it. */
 /* A shape that the solver does not know: the half-space above z = 60 mm, as a row of the table of shapes. */
 static bool above_is_near(const void *data, const double x[3], double margin) {
     (void)data;
@@ -308,6 +306,8 @@ static void a_shape_is_one_row(void **state) {
     fixture_free(&half_space);
 }
 
+/* A point that is free and deeper than a tenth of its spacing did not come through the surface: nothing
+ * pushes it. */
 static void points_that_come_from_behind_stay_free(void **state) {
     (void)state;
     for (int deep = 0; deep < 2; deep++) {
