@@ -22,25 +22,26 @@ bool sf_broad_is_due(const sf_scene *c) {
     return true;
 }
 
-/* True if a body that is no part of the skin may touch the point within the room of the lists; the anvil may
- * touch what rests on it at any time. */
-static bool meets_body(const sf_scene *c, int64_t p) {
+/* True if a body that is no part of the skin may touch the point within the reach of the lists, of which
+ * their room may be no more than a step's travel; the anvil may touch what rests on it at any time. */
+static bool meets_body(const sf_scene *c, int64_t p, double reach) {
     const double *x = &c->at->position[3 * p];
     for (int k = 0; k <= SF_BODY_MISSILE; k++)
         if (sf_skin_touches(c->skin, p, k) &&
-            (k == SF_BODY_MISSILE ? sf_missile_near(c->model, &c->state->missile, &c->body[k], x, c->at->room)
-                                  : c->response || sf_body_is_near(&c->body[k], x, c->at->room)))
+            (k == SF_BODY_MISSILE ? sf_missile_near(c->model, &c->state->missile, &c->body[k], x, reach)
+                                  : c->response || sf_body_is_near(&c->body[k], x, reach)))
             return true;
     return false;
 }
 
 /* Lists the nodes whose positions and normals a step needs, from those that are used. */
-static void list_nodes(const sf_scene *c, uint8_t *used) {
+static void list_nodes(const sf_scene *c, const sf_listing *l) {
     const sf_skin *skin = c->skin;
+    uint8_t *used = l->used;
     sf_contact_points *at = c->at;
     at->close_count = at->near_count = 0;
     for (int64_t p = 0; p < skin->count; p++)
-        if (used[p] || meets_body(c, p)) {
+        if (used[p] || meets_body(c, p, l->reach)) {
             used[p] = 1;
             at->close[at->close_count++] = (int32_t)p;
         }
@@ -62,6 +63,6 @@ sf_status sf_broad_list(const sf_scene *c, sf_error *err) {
     for (int k = 0; k < SF_SHAPES; k++)
         if (sf_shapes[k]->list)
             SF_TRY(sf_shapes[k]->list(c, &l, err));
-    list_nodes(c, l.used);
+    list_nodes(c, &l);
     return SF_OK;
 }
