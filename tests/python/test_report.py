@@ -19,8 +19,6 @@ from softfall import report
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
-pytestmark = pytest.mark.drawn
-
 
 def shown(folder):
     """Returns the text of a page, which is well-formed and has nothing to load or to run."""
@@ -55,6 +53,7 @@ def kinds(folder):
     return re.findall(r'<div class="(?:banner|tile) (\w+)"', (folder / "report.html").read_text())
 
 
+@pytest.mark.drawn
 def test_the_page_shows_the_figures_of_the_summary_the_answer_first(out):
     page, s = made(out), json.loads((out / "summary.json").read_text())
     verdict = s["verdict"]
@@ -189,6 +188,7 @@ def test_a_page_is_made_again_if_the_figures_are_newer(out):
     assert report.current(out).stat().st_mtime_ns > first
 
 
+@pytest.mark.drawn
 def test_runs_and_series_are_compared_on_a_page(drop, case, tmp_path):
     case["missile.velocity"] = "4 m/s"
     slower = case.run()
@@ -214,6 +214,7 @@ def test_layers_interfaces_and_comments_of_a_case_are_read():
     assert report.comments("materials: {\nupper: {\n# the one\n};\nlower: {\n# the other\n};\n};\n", "lower") == "the other" and report.comments("", None) == ""
 
 
+@pytest.mark.drawn
 @pytest.mark.skipif(not shutil.which("chromium"), reason="no chromium")
 def test_the_page_prints_on_two_sides_of_a4_and_fits_a_phone(tmp_path):
     from browse import Page
