@@ -162,7 +162,8 @@ def test_an_engine_gives_blocks_of_rows_to_jobs(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_full_disk_ends_the_campaign_and_loses_nothing(tmp_path: Path) -> None:
+def test_a_full_disk_ends_the_campaign_and_loses_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SOFTFALL_SHARE", raising=False)
     path = write_plan(tmp_path, SPEEDS % 12)
 
     def limit() -> None:
