@@ -35,7 +35,7 @@ FOLDER = ROOT / "tests/reference"
 TABLES = ("runs.csv", "drops.csv", "series.csv")  # recorded as columns; of other CSV files the digest is recorded
 
 # Keys and columns that differ from run to run, and texts of the programs or of the entry's own input.
-LEFT_OUT = {"program", "command_line", "folder", "wall_s", "threads", "caution", "finding", "why", "input_text", "reading"}
+LEFT_OUT = {"program", "git_revision", "command_line", "folder", "wall_s", "threads", "caution", "finding", "why", "input_text", "reading"}
 # Figures of a table that are recorded of all rows; the others are of the first row, and a digest stands for all.
 IN_FULL = re.compile(r"a_max_g|hic|max_indentation_mm|v_rebound_m_s|steps|.*_(low|high|refined|refined_error|note)")
 CHECK = ("value", "bound", "use_bound", "grade", "passed")  # a row for each check and each limit of a verdict

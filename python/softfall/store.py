@@ -53,6 +53,9 @@ class Store:
         with contextlib.suppress(Error):
             self.give_back()
         self._data.close()
+        for path in self._folder.glob("*"):
+            if not path.suffix and path.name != self._token:
+                self._lives(path.name)  # a process that was killed without a drop at work left it
         if self._lock >= 0:
             with contextlib.suppress(OSError):
                 os.unlink(self._folder / self._token)  # the folder stays: another process may be about to use it
@@ -83,8 +86,10 @@ class Store:
         if self._lock < 0:
             with self._sentence():
                 self._folder.mkdir(exist_ok=True)
-                self._lock = output_files.open_lock(self._folder / self._token)
+                begun = self._folder / f"{self._token}.begun"  # not yet locked
+                self._lock = output_files.open_lock(begun)
                 fcntl.flock(self._lock, fcntl.LOCK_EX)
+                begun.rename(self._folder / self._token)
         return self._lock
 
     def _lives(self, owner: str) -> bool:
