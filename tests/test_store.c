@@ -139,9 +139,11 @@ static void drops_of_the_section_are_run_once(void **state) {
                             k == 0 ? "0\n" : "4\n");
         if (sf_model_read(program_path(p, "m.h5"), &m[k], NULL, &err) != SF_OK)
             fail_msg("%s", err.text);
-        program_shell(p, "test ! -d sections || touch -d @0 sections/section-*");
+        if (k == 1)
+            program_shell(p, "touch -d @0 sections/section-*");
     }
-    assert_string_equal(program_shell(p, "find sections -name 'section-*' -newermt 2000-01-01").out, "");
+    assert_string_equal(program_shell(p, "find sections -name 'section-*' -newermt 2000-01-01").out,
+                        ""); /* none is written again */
     assert_true(m[0].section.a_max_g > 0);
     for (int k = 2; k >= 0; k--) {
         assert_memory_equal(&m[k].section, &m[0].section, sizeof m[k].section);

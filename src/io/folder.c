@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/hash.h"
+#include "build_info.h"
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "io/replace.h"
@@ -245,6 +246,7 @@ bool sf_store_begin_key(uint64_t *key) {
          sf_plain_hash_kept(own.dli_fname, &code[1], SF_IGNORED) != SF_OK))
         return false;
     *key = sf_hash_bytes(SF_HASH_START, code, sizeof code);
+    *key = sf_hash_bytes(*key, SF_GIT_REVISION, sizeof SF_GIT_REVISION);
     return true;
 }
 

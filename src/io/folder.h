@@ -42,8 +42,9 @@ int64_t sf_folder_count(const char *path, const char *prefix);
 /* The folder of SOFTFALL_SHARE if that is set, or else the given one. */
 const char *sf_store_folder(const char *given);
 
-/* Begins the key of a value that follows from the code: a hash of the program, and of the library that this
- * is in where a program such as Python has loaded it. False: one cannot be read. */
+/* Begins the key of a value that follows from the code: a hash of the program, of the library that this is in
+ * where a program such as Python has loaded it, and of the revision, as the library's file may have been
+ * replaced since. False: one cannot be read. */
 bool sf_store_begin_key(uint64_t *key);
 
 /* Before the files would take more bytes than this, all are removed. */

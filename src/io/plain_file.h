@@ -32,7 +32,7 @@ sf_status sf_plain_read(const char *path, const char *what, uint64_t largest, ch
 /* The same without the content: only its hash (sf_hash_bytes from SF_HASH_START). */
 sf_status sf_plain_hash(const char *path, const char *what, uint64_t largest, uint64_t *hash, sf_error *err);
 
-/* The same of a geometry, or of a file that one reads, which are asked for again and again: it is not read
+/* The same of a file of at most SF_PLAIN_GEOMETRY bytes that is asked for again and again: it is not read
  * again while it is the same file (device, inode, size, times of its modification and of its last change) as
  * when this function read it, unless it had been changed within the second before, which the clock of a file
  * system may not tell from another change. */

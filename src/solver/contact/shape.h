@@ -72,7 +72,8 @@ SF_SHAPE_ROWS(SF_SHAPE_DECLARE)
 enum { SF_SHAPES = SF_SHAPE_ROWS(SF_SHAPE_COUNT) };
 extern const sf_shape *const sf_shapes[SF_SHAPES];
 
-/* Returns the triangles of a body of the model, none if it has no sharp edges. */
+/* Returns the triangles of a body whose sharp edges press the pad, or of all supports for one of them; none
+ * of a body of another shape. */
 sf_shape_triangles sf_shape_triangles_of(const sf_model *model, int body);
 
 /* Makes a body of the model that is no part of the skin, for contact points of its largest spacing; *body is
