@@ -6,7 +6,8 @@
 #include <string.h>
 
 enum { SF_H5_MAX_RANK = 4, SF_H5_ATTRIBUTE_SIZE = 65536, SF_H5_COPY_SIZE = 1 << 16 };
-enum { SF_H5_PIECE_SIZE = 1 << 20, SF_H5_DEFLATE = 1 }; /* bytes; level of deflate */
+enum { SF_H5_PIECE_SIZE = 1 << 20, SF_H5_PACKED_FROM = 1 << 14 }; /* bytes */
+enum { SF_H5_DEFLATE = 1 };                                       /* level */
 
 /* Closes an id of HDF5, if it is not below 0, at the end of its block: KEPT hid_t space = ...; H5Idec_ref
  * would leave the id of a dataset whose last write failed. */
@@ -144,7 +145,8 @@ sf_status sf_h5_write(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int 
     return sf_h5_rows_end(&rows, err);
 }
 
-/* Pieces of whole rows, of about a megabyte. Nothing to compress: as any dataset. */
+/* Pieces of whole rows, of about a megabyte. Little to compress: as any dataset, as starting deflate would
+ * take longer than writing it. */
 static hid_t packed_storage(int rank, const int64_t *dims, size_t item_size) {
     hid_t storage = H5Pcreate(H5P_DATASET_CREATE);
     hsize_t piece[SF_H5_MAX_RANK];
@@ -153,7 +155,7 @@ static hid_t packed_storage(int rank, const int64_t *dims, size_t item_size) {
         piece[k] = (hsize_t)dims[k];
         row *= (size_t)dims[k];
     }
-    if (rank == 0 || dims[0] == 0 || row == 0)
+    if (rank == 0 || row * (size_t)dims[0] < SF_H5_PACKED_FROM)
         return storage;
     int64_t most = row < SF_H5_PIECE_SIZE ? (int64_t)(SF_H5_PIECE_SIZE / row) : 1;
     piece[0] = (hsize_t)(dims[0] < most ? dims[0] : most);
@@ -163,15 +165,14 @@ static hid_t packed_storage(int rank, const int64_t *dims, size_t item_size) {
     return storage;
 }
 
-/* `type`: as it is stored, and as the data are given. */
-static sf_status write_packed(sf_h5 *file, const sf_h5_info *info, const hid_t type[2], int rank,
-                              const int64_t *dims, const void *data, sf_error *err) {
+static sf_status write_packed(sf_h5 *file, const sf_h5_info *info, hid_t type, int rank, const int64_t *dims,
+                              const void *data, sf_error *err) {
     hid_t set = -1;
     KEPT hid_t space = make_space(rank, dims);
-    KEPT hid_t storage = packed_storage(rank, dims, H5Tget_size(type[0]));
-    create_dataset(file, info, type[0], space, storage, &set, err);
+    KEPT hid_t storage = packed_storage(rank, dims, H5Tget_size(type));
+    create_dataset(file, info, type, space, storage, &set, err);
     bool written = set < 0 || H5Sget_simple_extent_npoints(space) == 0 ||
-                   H5Dwrite(set, type[1], H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+                   H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
     if ((set >= 0 && H5Dclose(set) < 0) || !written)
         SF_FAIL(err, SF_ERR_IO, "%s: " SF_NOT_WRITTEN, file->path, info->path);
     return err->status;
@@ -179,14 +180,20 @@ static sf_status write_packed(sf_h5 *file, const sf_h5_info *info, const hid_t t
 
 sf_status sf_h5_write_packed(sf_h5 *file, const sf_h5_info *info, sf_h5_type type, int rank,
                              const int64_t *dims, const void *data, sf_error *err) {
-    return write_packed(file, info, (const hid_t[2]){native_type(type), native_type(type)}, rank, dims, data,
-                        err);
+    return write_packed(file, info, native_type(type), rank, dims, data, err);
 }
 
+/* Converted here: HDF5 would clear a buffer of a megabyte for each dataset. */
 sf_status sf_h5_write_singles(sf_h5 *file, const sf_h5_info *info, int rank, const int64_t *dims,
                               const double *data, sf_error *err) {
-    return write_packed(file, info, (const hid_t[2]){H5T_NATIVE_FLOAT, native_type(SF_H5_F64)}, rank, dims,
-                        data, err);
+    int64_t count = 1;
+    for (int k = 0; k < rank; k++)
+        count *= dims[k];
+    SF_OWNED float *single = sf_alloc(err, (size_t)count, sizeof *single, info->path);
+    SF_TRY(err->status);
+    for (int64_t i = 0; i < count; i++)
+        single[i] = (float)data[i];
+    return write_packed(file, info, H5T_NATIVE_FLOAT, rank, dims, single, err);
 }
 
 sf_status sf_h5_write_scalar(sf_h5 *file, const sf_h5_info *info, double value, sf_error *err) {
