@@ -15,8 +15,8 @@ enum { FINE, EQUAL, FASTER, THINNER, DROPS };
 enum { A_MAX, HIC, INDENTATION, FIGURES };
 
 static const double CFC = 1000, PERCENT = 0.01;
-static const double STEP_LIMIT =
-    50e-6;                             /* s, that of a case that gives none: a shorter one buys no accuracy */
+static const double STEP_LIMIT = 50e-6, STEP_SAFETY = 0.97; /* s, -: of a case that gives none; shorter steps
+                                                             * buy no accuracy */
 enum { MOST_STEPS = 50000 };           /* a drop that has not ended then counts as one without rebound */
 static const double ORDER_2 = 1.0 / 3; /* of the step to half the spacing: what is left with order 2 */
 static const double DOUBT = 0.75;      /* of that step: orders from 0.95 on are covered */
@@ -102,8 +102,10 @@ static void make_thinner(const sf_kernel *kernel, sf_model *m) {
 /* Side by side, each on one thread. */
 static void run_all(sf_model *const model[DROPS], const char *store, double figure[DROPS][FIGURES]) {
     for (int k = 0; k < DROPS; k++)
-        if (model[k])
+        if (model[k]) {
             model[k]->run.step_limit = fmax(model[k]->run.step_limit, STEP_LIMIT);
+            model[k]->run.step_safety = fmax(model[k]->run.step_safety, STEP_SAFETY);
+        }
 #pragma omp parallel for schedule(dynamic, 1) default(none) shared(model, store, figure)
     for (int k = 0; k < DROPS; k++) {
         omp_set_num_threads(1);

@@ -86,7 +86,7 @@ static sf_status make_sphere(double radius, sf_surface *s, sf_error *err) {
 
 sf_status sf_alike_make(const sf_case *c, const sf_model *model, const sf_contact_zone *zone, sf_mesh *mesh,
                         sf_surface *missile, sf_error *err) {
-    if (c->layer_count > 0 || c->membrane_count > 0 || c->motion_count > 0 || !(zone->half_width > 0))
+    if (c->layer_count > 0 || c->membrane_count > 0 || sf_missile_is_driven(model) || !(zone->half_width > 0))
         return SF_REFUSE(err, "no axisymmetric drop is like this one: several foams, a cover, or a "
                               "prescribed motion");
     if (make_plate(zone, model->thickness, mesh, err) != SF_OK ||
