@@ -13,13 +13,13 @@ from typing import Any, Mapping
 
 import h5py
 import numpy as np
-import pandas
 
 from . import library, output as output_files, report_pictures as pictures
 from .array import Array
 from .drop import Drop, as_str
 from .errors import Error, InputError
 from .library import GRADES
+from .study import Table
 from .template import render
 
 KINDS = dict(zip(GRADES, ("good", "fair", "bad")))
@@ -142,10 +142,10 @@ class Page:
     def _table(self, name: str) -> dict[str, Array] | None:
         path = self.folder / name
         try:
-            table = pandas.read_csv(path)
-            if len(table) < 2 or not all(kind.kind in "fi" for kind in table.dtypes):
+            table = Table(path)
+            if len(table) < 2 or not all(table[column].dtype.kind == "f" for column in table):
                 raise ValueError("a row or a number is missing")
-            return {str(column): table[column].to_numpy(float) for column in table}
+            return {column: table[column] for column in table}
         except (OSError, ValueError) as error:
             self.problems.append(f"{name} cannot be read: {error.strerror if isinstance(error, OSError) else error}. What it shows is left out; `softfall-post' makes it anew")
             return None
@@ -389,6 +389,7 @@ def write(folder: Path, drop: Drop | None = None) -> Path:
 
 def _write_comparison(folder: Path) -> Path:
     """Writes the page of `softfall-post compare` or `series`."""
+    import pandas  # half a second, for this page alone
     try:
         told = json.loads(output_files.read(folder / "compare.json"))
         curves, table = pandas.read_csv(folder / "compare_curves.csv"), pandas.read_csv(folder / "compare.csv", index_col="figure", dtype=str, keep_default_na=False)

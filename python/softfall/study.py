@@ -27,7 +27,13 @@ class Table:
 
     def __init__(self, path: Path) -> None:
         with open(path, newline="", encoding="utf-8") as stream:
-            self.columns, *self.rows = list(csv.reader(stream))
+            try:
+                lines = list(csv.reader(stream, strict=True))
+            except csv.Error as error:
+                raise ValueError(str(error)) from None
+        if not lines or any(len(line) != len(lines[0]) for line in lines):
+            raise ValueError("a field is missing")
+        self.columns, *self.rows = lines
         self._data = {name: _typed([row[k] for row in self.rows]) for k, name in enumerate(self.columns)}
 
     def __getitem__(self, key: str) -> Array:
