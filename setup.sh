@@ -35,10 +35,12 @@ packages_of() {
 }
 
 missing_packages() {
-    local package state
+    local package installed
+    # A package that dpkg does not know makes it fail; it lists the others all the same.
+    # shellcheck disable=SC2046
+    installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' $(packages_of "$@") 2>/dev/null) || true
     for package in $(packages_of "$@"); do
-        state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) || state=absent
-        [ "$state" = installed ] || printf '%s ' "$package"
+        [[ $'\n'$installed$'\n' == *$'\n'"installed $package"$'\n'* ]] || printf '%s ' "$package"
     done
 }
 

@@ -37,7 +37,7 @@ static int set_up(void **state) {
                                  "--checkpoint-time", "0.5 ms", NULL};
     program_succeed(p, "pre",
                     "'%s' -o model.h5 %s --set output.frame_interval='\"1 ms\"' "
-                    "--set solver.step_safety=0.1 --set solver.end_time='\"14 ms\"'",
+                    "--set solver.step_safety=0.2 --set solver.end_time='\"14 ms\"'",
                     fixture_source("examples/eva50-v4.5/case.cfg"), program_coarse(20));
     program_succeed(p, "solve", "model.h5 -o full.h5 -t 1");
     int status = 0;

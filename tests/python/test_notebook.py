@@ -5,7 +5,10 @@ import pathlib
 import subprocess
 import sys
 
+import pytest
 
+
+@pytest.mark.slow
 def test_first_drop(here):
     source = pathlib.Path(os.environ["SF_SOURCE_DIR"])
     result = subprocess.run([sys.executable, str(source / "tools/notebook.py"), str(source / "examples/python/first_drop.ipynb"), "--check"],
