@@ -4,6 +4,7 @@ import importlib.util
 import os
 import subprocess
 import sys
+import tempfile
 
 NEEDED = {"pytest": "python3-pytest", "numpy": "python3-numpy", "h5py": "python3-h5py", "matplotlib": "python3-matplotlib",
           "scipy": "python3-scipy"}
@@ -11,5 +12,6 @@ missing = [package for module, package in NEEDED.items() if not importlib.util.f
 if missing:
     print(f"the tests of the Python package need {', '.join(missing)} for {sys.executable}")
     sys.exit(1 if os.environ.get("SF_NO_SKIP") == "1" else 77)
-sys.exit(subprocess.call([sys.executable, "-W", "error::SyntaxWarning", "-m", "pytest", "-q", "-p", "no:cacheprovider",
-                          *sys.argv[1:]]))
+with tempfile.TemporaryDirectory(prefix="softfall-tests-", ignore_cleanup_errors=True) as folder:
+    code = subprocess.call([sys.executable, "-W", "error::SyntaxWarning", "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--basetemp={folder}/files", *sys.argv[1:]])
+sys.exit(code)

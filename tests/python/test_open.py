@@ -10,6 +10,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 import pytest
@@ -240,7 +241,7 @@ def test_a_measured_file_lies_beside_the_drop(page):
     page.value("(() => { const d = new DataTransfer(); d.items.add(new File(['no,numbers\\nat,all\\n'], 'bad.csv')); "
                "document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: d, bubbles: true, cancelable: true})); })()")
     page.wait_for("document.getElementById('measured-note').textContent.startsWith('bad.csv')")
-    assert "/tmp" not in text(page, "measured-note")
+    assert tempfile.gettempdir() not in text(page, "measured-note")
     page.value("document.querySelector('#runs tbody button').click()")
     page.wait_for("!document.getElementById('key').textContent.includes('measured')")
 
