@@ -365,10 +365,10 @@ static double processor_time(const conversation *c) {
  * processor for long. `step`: seconds since the last look, of which few count: both processes may have been
  * stopped meanwhile. */
 static void watch(conversation *c, double step) {
-    double worked = processor_time(c), patience = fmin(fmax(c->seconds, 10), 60);
+    double worked = processor_time(c), patience = fmin(fmax(c->seconds, 5), 60);
     c->idle = fmax(0, c->idle + fmin(step, 2) - 100 * (worked - c->worked));
     c->worked = worked;
-    c->late = worked > c->seconds + 6;
+    c->late = worked > c->seconds + 2;
     c->waits = c->idle > patience;
     if (c->late || c->waits)
         stop(c);
