@@ -26,7 +26,9 @@ class Page:
 
         self.browser = subprocess.Popen(["chromium", *OPTIONS, "--user-data-dir=" + self.folder.name, "about:blank"],
                                         preexec_fn=take_pipes, close_fds=False, stdin=subprocess.DEVNULL,
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                        # with large pages of malloc its drawing process ends
+                                        env={name: value for name, value in os.environ.items() if name != "GLIBC_TUNABLES"})
         os.close(commands[0])
         os.close(answers[1])
         self.commands, self.answers = commands[1], answers[0]
