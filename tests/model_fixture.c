@@ -121,7 +121,9 @@ void fixture_slant(sf_case *c, double slant) {
 void fixture_geometry(const sf_case *c, sf_mesh *mesh, sf_surface *surface) {
     sf_error err = SF_ERROR_INIT;
     sf_gmsh *session = NULL;
-    if (sf_gmsh_begin(&session, &err) == SF_OK && sf_gmsh_load(session, &c->pad, &err) == SF_OK &&
+    if (sf_gmsh_begin(&session, &err) == SF_OK)
+        session->store = c->store;
+    if (session && sf_gmsh_load(session, &c->pad, &err) == SF_OK &&
         sf_gmsh_read_mesh(session, c->pad_group, c->length_unit, mesh, &err) == SF_OK &&
         sf_gmsh_load(session, &c->missile, &err) == SF_OK)
         sf_gmsh_read_surface(session, c->surface_group, c->length_unit, surface, &err);

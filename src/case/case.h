@@ -73,8 +73,8 @@ typedef struct sf_case {
     double length_unit; /* m per unit of the geometry */
     double up[3];       /* -, unit vector out of the pad's face, in the geometry; the model has it along z */
     double mesh_time_limit; /* s of processor time for gmsh, per geometry */
-    const char *store;    /* folder in which meshes and domains are kept for other drops (io/folder.h); NULL:
-                             they are not; borrowed, not of the case file */
+    const char *store; /* folder in which meshes and domains are kept for other drops (io/folder.h), when it
+                          is read that of SOFTFALL_SHARE; NULL: they are not; borrowed */
     char *geometry_files; /* what the geometries read (sf_gmsh.files), set when they are meshed; owned */
     char pad_group[SF_CASE_NAME_SIZE]; /* physical volume group of the pad; of layers, for sentences: all */
     char contact_group[SF_CASE_NAME_SIZE]; /* physical surface group that the missile may touch */

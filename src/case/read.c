@@ -10,6 +10,7 @@
 #include "case/rules.h"
 #include "case/value.h"
 #include "case/values.h"
+#include "io/folder.h"
 #include "material/laws.h"
 
 enum { NAMED_UNKNOWN = 10 };
@@ -462,7 +463,7 @@ static void end_reading(sf_case_reader *reader) {
 
 sf_status sf_case_read_values(const sf_case_input *input, const sf_sink *sink,
                               const sf_case_listener *listener, sf_case *out, sf_error *err) {
-    *out = (sf_case){.values = SF_HASH_START};
+    *out = (sf_case){.values = SF_HASH_START, .store = sf_store_folder(NULL)};
     sf_case_reader reader = {.path = input->path,
                              .out = out,
                              .drop = input->drop,

@@ -76,6 +76,17 @@ bool sf_geometry_files_are_same(const char *const folder[SF_GEOMETRIES], const c
 
 static const char KIND[] = "mesh";
 
+/* In the order of the names, as another order of the case gives the same mesh. */
+static const sf_geo_parameter *next_parameter(const sf_geo_source *source, const sf_geo_parameter *last) {
+    const sf_geo_parameter *next = NULL;
+    for (int k = 0; k < source->parameter_count; k++) {
+        const sf_geo_parameter *p = &source->parameter[k];
+        if ((!last || strcmp(p->name, last->name) > 0) && (!next || strcmp(p->name, next->name) < 0))
+            next = p;
+    }
+    return next;
+}
+
 /* Computes the key from the geometry's own file with its name, by which gmsh tells formats, its parameters
  * and softfall-mesh. False: the key is not known, and nothing is shared. */
 static bool find_key(const sf_geo_source *source, uint64_t *key) {
@@ -90,8 +101,7 @@ static bool find_key(const sf_geo_source *source, uint64_t *key) {
     *key = sf_hash_bytes(SF_HASH_START, content, sizeof content);
     *key = sf_hash_bytes(*key, name, strlen(name) + 1);
     *key = sf_hash_bytes(*key, &source->unit, sizeof source->unit);
-    for (int k = 0; k < source->parameter_count; k++) {
-        const sf_geo_parameter *p = &source->parameter[k];
+    for (const sf_geo_parameter *p = NULL; (p = next_parameter(source, p)) != NULL;) {
         *key = sf_hash_bytes(*key, p->name, strlen(p->name) + 1);
         *key = sf_hash_bytes(*key, &p->value, sizeof p->value);
     }
