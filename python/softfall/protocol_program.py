@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from . import output as output_files
+from . import output as output_files, worker
 from .case import Case
 from .command import Parser, say, values_of
 from .curves import column
@@ -192,5 +192,6 @@ def parser(prog: str) -> Parser:
 
 def run(o: argparse.Namespace) -> int:
     """Runs a protocol and returns the exit code."""
-    say(perform(o))
+    with worker.kept():  # for its many searches
+        say(perform(o))
     return 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Worker processes that simulate drops in memory: `python -m softfall.worker SHARE` reads a drop from each line and answers with its figures."""
+"""Worker processes that simulate drops in memory: `python -m softfall.worker` reads a drop, and the folder of its meshes, from each line and answers with its figures."""
 from __future__ import annotations
 
 import concurrent.futures
@@ -10,14 +10,16 @@ import queue
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
-from typing import Any, Callable, NamedTuple
+from typing import Any, Callable, Iterator, NamedTuple
 
 from . import memory, programs
 from .errors import Error, failure
 from .memory import DropFigures
 
+DROPS = "softfall.worker"  # simulates drops
 OF_THE_MACHINE = (3, 6)  # exit codes of failures that are not the drop's own: a file, memory
 
 
@@ -59,19 +61,23 @@ def simulate(task: Task, share: str) -> Answer:
 
 
 class _Worker:
-    """A process that simulates one task at a time."""
+    """A process that simulates one task at a time. `kind` is what it begins with: the program, the folder and the settings."""
 
-    def __init__(self, share: str, module: str) -> None:
+    def __init__(self, module: str) -> None:
+        self.kind = _kind(module)
         package = str(Path(__file__).resolve().parent.parent)
         path = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONPATH": path, "SF_BIN_DIR": str(programs.folder())}
-        self._process = subprocess.Popen([sys.executable, "-m", module, share], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        self._process = subprocess.Popen([sys.executable, "-m", module], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                          start_new_session=True, env=environment)
 
-    def ask(self, task: Any) -> Answer:
+    def is_alive(self) -> bool:
+        return self._process.poll() is None
+
+    def ask(self, task: Any, share: str) -> Answer:
         assert self._process.stdin and self._process.stdout
         try:
-            self._process.stdin.write(json.dumps(task).encode() + b"\n")
+            self._process.stdin.write(json.dumps([task, share]).encode() + b"\n")
             self._process.stdin.flush()
             line = self._process.stdout.readline()
         except OSError:
@@ -95,10 +101,48 @@ class _Worker:
                     stream.close()
 
 
-class Pool:
-    """Workers side by side; a context manager, at whose end they go."""
+_resting: list[_Worker] | None = None  # within `kept`
+_lock = threading.Lock()  # of `_resting`: a pool has threads
 
-    def __init__(self, jobs: int, share: Path, module: str = "softfall.worker") -> None:
+
+def _kind(module: str) -> tuple[Any, ...]:
+    return module, os.getcwd(), *sorted(item for item in os.environ.items() if item[0].startswith(("SF_", "SOFTFALL_", "OMP_")))
+
+
+@contextlib.contextmanager
+def kept() -> Iterator[None]:
+    """Within this context a worker of drops that is free at the end of its pool serves the next one: its start takes as long as ten drops.
+
+    Those of `softfall fit` do not, as they keep models."""
+    global _resting
+    if _resting is not None:
+        yield
+        return
+    _resting = []
+    try:
+        yield
+    finally:
+        for worker in _resting:
+            worker.end()
+        _resting = None
+
+
+def _begin(module: str) -> _Worker:
+    kind = _kind(module)
+    with _lock:
+        found = next((worker for worker in _resting or () if worker.kind == kind), None)
+        if _resting and found:
+            _resting.remove(found)
+    if found and not found.is_alive():
+        found.end()
+        found = None
+    return found or _Worker(module)
+
+
+class Pool:
+    """Workers side by side; a context manager, at whose end they go, or rest (`kept`)."""
+
+    def __init__(self, jobs: int, share: Path, module: str = DROPS) -> None:
         self.jobs, self._share, self._module = jobs, str(share), module
         self._free: queue.SimpleQueue[_Worker | None] = queue.SimpleQueue()
         self._all: list[_Worker] = []
@@ -112,8 +156,18 @@ class Pool:
 
     def __exit__(self, *_: Any) -> None:
         self._ended = True
+        free: list[_Worker] = []
+        with contextlib.suppress(queue.Empty):
+            while True:
+                worker = self._free.get_nowait()
+                free += [worker] if worker else []
+        for _waiting in range(self.jobs):
+            self._free.put(None)
         for worker in list(self._all):
-            worker.end()
+            if _resting is not None and worker in free and self._module == DROPS:
+                _resting.append(worker)
+            else:
+                worker.end()
         self._threads.shutdown(wait=True, cancel_futures=True)
 
     def _ask(self, task: Any) -> Answer:
@@ -121,11 +175,11 @@ class Pool:
         if self._ended:
             raise failure("the study ends", 130)
         if worker is None:
-            worker = _Worker(self._share, self._module)
+            worker = _begin(self._module)
             self._all.append(worker)
         answer: Answer | None = None
         try:
-            answer = worker.ask(task)
+            answer = worker.ask(task, self._share)
             return answer
         finally:
             broken = answer is None or answer.code == 7
@@ -151,4 +205,4 @@ def answer(solve: Callable[[list[Any]], Answer]) -> None:
 
 
 if __name__ == "__main__":
-    answer(lambda request: simulate(Task(*request), sys.argv[1]))
+    answer(lambda request: simulate(Task(*request[0]), request[1]))

@@ -15,7 +15,7 @@ import pytest
 import matplotlib
 matplotlib.use("agg")
 import softfall  # noqa: E402
-from softfall import command  # noqa: E402
+from softfall import command, worker  # noqa: E402
 
 BIN = pathlib.Path(os.environ["SF_BIN_DIR"])
 
@@ -58,12 +58,19 @@ def command_here(*words):
 
 @pytest.fixture(scope="session")
 def place(tmp_path_factory):
-    """A folder with pad/case.cfg: nodes 20 mm apart, which take part of a second."""
+    """A folder with pad/case.cfg: nodes 25 mm apart, which take part of a second."""
     folder = tmp_path_factory.mktemp("drops")
-    program("new", "pad", "--from", "eva50-v4.5", "--set", "geometry.parameters.fine_spacing=20", "--set",
-            "geometry.parameters.outer_spacing=20", "--set", "geometry.missile_parameters.element_size=20", "--set",
+    program("new", "pad", "--from", "eva50-v4.5", "--set", "geometry.parameters.fine_spacing=25", "--set",
+            "geometry.parameters.outer_spacing=40", "--set", "geometry.missile_parameters.element_size=20", "--set",
             "pad.mesh_error_limit=1.0", cwd=folder)
     return folder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def workers():
+    """A worker of one test serves the next ones."""
+    with worker.kept():
+        yield
 
 
 @pytest.fixture(autouse=True)

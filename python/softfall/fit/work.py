@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes as c
 import functools
 import math
-import sys
 import time
 from typing import Any, NamedTuple
 
@@ -121,9 +120,9 @@ def simulate(task: Task, share: str) -> Answer:
 
 def main(request: list[Any]) -> Answer:
     """Answers a request of the process that asks."""
-    task = Task(*request)
+    task = Task(*request[0])
     material, curve, solid_density = task.form
-    return simulate(task._replace(form=(material, curve, solid_density)), sys.argv[1])
+    return simulate(task._replace(form=(material, curve, solid_density)), request[1])
 
 
 if __name__ == "__main__":
