@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 import time
 
-OPTIONS = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-sandbox",
+OPTIONS = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-sandbox", "--disable-gpu-compositing",
            "--remote-debugging-pipe", "--no-first-run", "--disable-dev-shm-usage", "--disable-background-networking"]
 
 
@@ -83,7 +83,7 @@ class Page:
             self.errors.append(p["exceptionDetails"].get("exception", {}).get("description") or str(p["exceptionDetails"]))
         elif event == "Runtime.consoleAPICalled" and p["type"] in ("error", "warning", "assert"):
             self.errors.append(" ".join(str(a.get("value", a.get("description"))) for a in p["args"]))
-        elif event == "Log.entryAdded" and p["entry"]["level"] in ("error", "warning"):
+        elif event == "Log.entryAdded" and p["entry"]["level"] in ("error", "warning") and "stall due to ReadPixels" not in p["entry"]["text"]:  # of drawing in software
             self.errors.append(p["entry"]["text"])
         elif event == "Network.requestWillBeSent":
             self.requests.append(p["request"]["url"][:80])
@@ -106,8 +106,12 @@ class Page:
         self.value("new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => r(1))))")
 
     def centre_of(self, identifier, across=0.5, down=0.5):
-        return self.value("(() => { const e = document.getElementById('%s'); e.scrollIntoView({block: 'nearest'}); const b = e.getBoundingClientRect(); "
-                          "return [b.x + %g * b.width, b.y + %g * b.height]; })()" % (identifier, across, down))
+        place, before = [], None
+        while place != before:  # until it has come to rest
+            before, place = place, self.value("(() => { const e = document.getElementById('%s'); e.scrollIntoView({block: 'nearest'}); const b = e.getBoundingClientRect(); "
+                                              "return [b.x + %g * b.width, b.y + %g * b.height]; })()" % (identifier, across, down))
+            self.settle()
+        return place
 
     def click(self, x, y):
         for kind in ("mousePressed", "mouseReleased"):

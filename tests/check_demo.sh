@@ -40,12 +40,24 @@ awk -v a="$a_max" -v h="$hic" -v e="$error" -v he="$hic_error" \
 demo second
 grep -q 'are up to date' "$place/second" || fail "a second call computes: $(cat "$place/second")"
 [ "$(figures second)" = "$(figures first)" ] || fail "a second call prints other figures: $(cat "$place/second")"
+
+# From here on a run is a line of "$place/runs".
+cat >"$place/tools/run_case.sh" <<'TEXT'
+#!/bin/sh
+echo "$1" >>runs
+echo "  run $(wc -l <runs)" >"$2/report.txt"
+cat "$2/report.txt"
+TEXT
+
+# run_anew LOG NUMBER [OPTION]
+run_anew() {
+    demo "$1" "${@:3}"
+    ! grep -q 'are up to date' "$place/$1" && grep -q "run $2" "$place/$1" || fail "old figures: $(cat "$place/$1")"
+}
 rm "$place/out/eva50-v4.5/report.txt" # as after an interruption
-demo interrupted
-! grep -q 'are up to date' "$place/interrupted" || fail "half a demo stands for a whole one"
+run_anew interrupted 1
 sed -i 's/thickness = 50.0/thickness = 55.0/' "$place/examples/eva50-v4.5/case.cfg"
-demo third
-demo fourth --force
-! grep -q 'are up to date' "$place/third" "$place/fourth" || fail "old figures"
-[ "$(figures third)" != "$(figures first)" ] || fail "figures of another pad: $(figures third)"
-[ "$(figures fourth)" = "$(figures third)" ] || fail "--force gives other figures: $(figures fourth)"
+run_anew changed 2
+run_anew forced 3 --force
+demo again
+grep -q 'are up to date' "$place/again" && grep -q 'run 3' "$place/again" || fail "a repeat computes: $(cat "$place/again")"

@@ -60,7 +60,7 @@ int program_group_case(void **state) {
 int program_group_example(void **state) {
     program_group_case(state);
     const program_place *place = *state;
-    program_succeed(place, "pre", "good.cfg -o model.h5 %s --set solver.end_time='1 ms'", program_coarse(20));
+    program_succeed(place, "pre", "good.cfg -o model.h5 %s --set solver.end_time='1 ms'", program_coarse(25));
     program_succeed(place, "solve", "model.h5 -o results.h5 --threads 1");
     program_succeed(place, "post", "results.h5 -o out");
     return 0;
@@ -159,9 +159,9 @@ program_result program_figures(const program_place *place, const char *format, .
 const char *program_coarse(double spacing) {
     static char options[256];
     snprintf(options, sizeof options,
-             "--set geometry.parameters.fine_spacing=%.1f --set geometry.parameters.outer_spacing=20.0 "
+             "--set geometry.parameters.fine_spacing=%.1f --set geometry.parameters.outer_spacing=%.1f "
              "--set geometry.missile_parameters.element_size=20.0 --set pad.mesh_error_limit=1",
-             spacing);
+             spacing, spacing < 25 ? 20.0 : 40.0);
     return options;
 }
 

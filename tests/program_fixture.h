@@ -57,8 +57,8 @@ program_result program_succeed(const program_place *place, const char *name, con
 program_result program_figures(const program_place *place, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* --set options that make the example case coarse, and allow it: `spacing` mm in the zone, 20 mm outside;
- * valid until the next call. */
+/* --set options that make the example case coarse, and allow it: `spacing` mm in the zone, 20 mm outside, or
+ * 40 from a spacing of 25 mm on; valid until the next call. */
 const char *program_coarse(double spacing);
 
 /* folder/name of HDF5, open for reading. */

@@ -142,7 +142,7 @@ static void cases_that_contradict_their_geometry_are_refused(void **state) {
                      "'time_ms,displacement_mm\\n0,0\\n100,60\\n' > deep.csv");
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         program_result result = program_run(p, "pre", "good.cfg -o model.h5 --force %s --set %s",
-                                            program_coarse(20), cases[k].set);
+                                            program_coarse(25), cases[k].set);
         assert_refused(&result, cases[k].part);
     }
     program_assert_unchanged(program_path(p, "model.h5"), &before);

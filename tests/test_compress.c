@@ -140,7 +140,7 @@ static void models_keep_six_terms(void **state) {
         program_succeed(
             *state, "pre",
             "good.cfg -o six.h5 --force --set material=@foam.cfg --set 'solver.end_time=\"1 ms\"' %s",
-            program_coarse(20));
+            program_coarse(25));
         program_succeed(*state, "solve", "six.h5 -o six-results.h5 --force");
         sf_h5 *h5 = program_open_h5(*state, "six.h5");
         assert_true(sf_h5_exists(h5, "/material/0/term_3_mu"));

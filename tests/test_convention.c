@@ -46,7 +46,7 @@ static void release(drop *d) {
 /* The missile falls 20 mm freely at first. */
 static drop falling(const program_place *p, const char *name, const char *convention) {
     program_succeed(p, "pre", "good.cfg -o model.h5 --force %s --set missile.gap='\"20 mm\"' --set %s",
-                    program_coarse(20), convention);
+                    program_coarse(25), convention);
     program_succeed(p, "solve", "model.h5 -o %s --force --threads 1", name);
     return evaluate(p, name);
 }

@@ -111,7 +111,7 @@ static void peak_that_cannot_be_written_is_told(void **state) {
     static const struct {
         int kilobytes;
         const char *left;
-    } rows[] = {{120, "base.h5\n"}, {330, "base.h5\nframe-000000.h5\npeak.h5\n"}};
+    } rows[] = {{85, "base.h5\n"}, {215, "base.h5\nframe-000000.h5\npeak.h5\n"}};
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         program_result result, seen;
         run_on_small_disk(p, rows[k].kilobytes, "true", "solve",

@@ -65,7 +65,7 @@ static void changes_by_stress(const program_place *p, double change[2]) {
             p, "pre",
             "good.cfg -o m.h5 --force --estimate %s --set material.curve='\"materials/other.csv\"' --set "
             "material.E='\"%.9g MPa\"' --set material.ED='\"%.9g MPa\"'",
-            program_coarse(20), by * 0.4136, by * 1.52312043584);
+            program_coarse(25), by * 0.4136, by * 1.52312043584);
         program_succeed(p, "solve", "m.h5 -o r.h5 --force -t 1");
         program_figures(p, "r.h5 -o out --force");
         value[side][0] = figure(p, "a_max_g");

@@ -31,7 +31,7 @@ static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
 static int set_up(void **state) {
     const program_place *p = program_group_set_up(state);
     program_succeed(p, "pre", "'%s' -o free.h5 %s" WHOLE FREE OBLIQUE, fixture_source(EXAMPLE),
-                    program_coarse(20));
+                    program_coarse(25));
     program_succeed(p, "solve", "free.h5 -o full.h5 --threads 1");
     return 0;
 }
@@ -80,7 +80,7 @@ static void a_given_body_is_taken(void **state) {
         " --set 'missile.inertia=[\"0.01 kg m2\", \"0.012 kg m2\", \"0.015 kg m2\", \"10 kg cm2\", "
         "\"0 kg m2\", \"0 kg m2\"]' --set 'missile.centre=[\"5 mm\", \"0 mm\", \"50 mm\"]' "
         "--set 'missile.position=[\"20 mm\", \"10 mm\"]'",
-        fixture_source(EXAMPLE), program_coarse(20));
+        fixture_source(EXAMPLE), program_coarse(25));
     read_model(p, "given.h5", &m);
     read_model(p, "free.h5", &own);
     double moved[3]; /* against the other model, whose missile is placed elsewhere */
@@ -122,7 +122,7 @@ static void what_no_free_missile_can_be_is_refused(void **state) {
     };
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         program_result r = program_run(p, "pre", "'%s' -o refused.h5 %s%s", fixture_source(EXAMPLE),
-                                       program_coarse(20), rows[k].words);
+                                       program_coarse(25), rows[k].words);
         if (r.code == 0 || !strstr(r.err, rows[k].said))
             fail_msg("%s: %s", rows[k].words, r.err);
         assert_false(run_is_there(p, "refused.h5"));

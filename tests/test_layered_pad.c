@@ -135,7 +135,7 @@ static void layers_read_like_the_one_material(void **state) {
                      "examples/layers/one.cfg > examples/layers/named.cfg");
     for (int k = 0; k < 2; k++) {
         const char *name = k ? "named" : "one";
-        program_succeed(p, "pre", "examples/layers/%s.cfg -o %s.m.h5 %s", name, name, program_coarse(20));
+        program_succeed(p, "pre", "examples/layers/%s.cfg -o %s.m.h5 %s", name, name, program_coarse(25));
         program_succeed(p, "solve", "%s.m.h5 -o %s.h5 --threads 1 --end-time '2 ms' --no-checkpoint", name,
                         name);
         program_figures(p, "%s.h5 -o %s", name, name);

@@ -29,7 +29,7 @@ static void the_list_has_every_example(void **state) {
 /* The commands that it prints are those of a first case; the folder moves before they run. */
 static void a_new_case_runs_as_it_stands(void **state) {
     const program_place *p = *state;
-    program_result r = program_succeed(p, "new", "mine %s --set solver.end_time='1 ms'", program_coarse(20));
+    program_result r = program_succeed(p, "new", "mine %s --set solver.end_time='1 ms'", program_coarse(25));
     assert_non_null(strstr(r.out, "mine holds the case of the example eva50-v4.5, with all that it needs"));
     program_result done =
         program_shell(p,
@@ -67,7 +67,7 @@ static void the_commands_of_the_readme_run(void **state) {
         "\"$SF_SOURCE_DIR/README.md\" > steps && test $(grep -c '^softfall-' steps) = 4 && "
         "sed \"s/^softfall-new [^#]*/&%s --set solver.end_time='1 ms' /\" steps > coarse && sh -e ./coarse && "
         "test -s my-pad/out/summary.json && test -s my-pad/out/report.html",
-        program_coarse(20));
+        program_coarse(25));
     if (r.code != 0)
         fail_msg("%s%s", r.out, r.err);
 }

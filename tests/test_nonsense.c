@@ -227,7 +227,7 @@ static void geometries(void **state) {
         {"--set geometry.parameters.fine_spacing=0.1", {"pad.geo", "GB", "SOFTFALL_MEMORY_MB"}},
     };
     char before[512];
-    snprintf(before, sizeof before, "good.cfg -o model.h5 --force %s", program_coarse(20));
+    snprintf(before, sizeof before, "good.cfg -o model.h5 --force %s", program_coarse(25));
     setenv("SOFTFALL_MEMORY_MB", "300", 1); /* the same answers on a machine with any memory */
     REFUSE_ALL(*state, "pre", before, rows);
     if (!SANITIZED)
@@ -254,7 +254,7 @@ static void impacts_on_an_edge_are_told(void **state) {
         program_result r = program_run(
             *state, "pre",
             "good.cfg -o edge.h5 --force %s --set pad.symmetry='[]' --set geometry.missile_parameters.quarter=0 %s",
-            program_coarse(20), rows[k].words);
+            program_coarse(25), rows[k].words);
         const char *told = strstr(r.err, "the missile falls on the edge of the pad");
         assert_int_equal(r.code, 0);
         if (!rows[k].said)
@@ -268,7 +268,7 @@ static void impacts_on_an_edge_are_told(void **state) {
 /* A drawing in centimetres beside one in millimetres: each file has its own unit. */
 static void files_may_have_units_of_their_own(void **state) {
     char before[512];
-    snprintf(before, sizeof before, "good.cfg --force %s", program_coarse(20));
+    snprintf(before, sizeof before, "good.cfg --force %s", program_coarse(25));
     program_succeed(*state, "pre", "%s -o mm.h5", before);
     program_succeed(*state, "pre",
                     "%s -o cm.h5 --set geometry.missile_length_unit=cm --set "

@@ -135,7 +135,7 @@ static void a_name_that_cannot_be_made_is_refused_first(void **state) {
 static void files_that_look_like_rests_stay(void **state) {
     const program_place *p = *state;
     char pre[600];
-    snprintf(pre, sizeof pre, "good.cfg -o z.h5 --force %s --set solver.end_time='1 ms'", program_coarse(20));
+    snprintf(pre, sizeof pre, "good.cfg -o z.h5 --force %s --set solver.end_time='1 ms'", program_coarse(25));
     program_shell(
         p,
         "echo mine > precious; cp precious r.h5.partial; cp precious r.h5.restart.partial; ln -s precious z.h5.partial; "

@@ -29,7 +29,7 @@ static int set_up(void **state) {
         p, "pre",
         "good.cfg -o full.h5 %s --set solver.end_time='1.5 ms' --set geometry.parameters.quarter=0 "
         "--set geometry.missile_parameters.quarter=0 --set 'missile.position=[\"40 mm\",\"-30 mm\"]'",
-        program_coarse(20));
+        program_coarse(25));
     simulate(p, "full");
     program_succeed(p, "pre",
                     "'%s' -o pressed.h5 --set geometry.parameters.spacing=25 --set 'solver.end_time=5 ms'",
@@ -40,7 +40,7 @@ static int set_up(void **state) {
         p, "pre",
         "good.cfg -o half.h5 %s --set solver.end_time='0.5 ms' --set 'pad.symmetry=[\"symmetry_y\"]' "
         "--set geometry.missile_parameters.quarter=0 --set 'missile.position=[\"0 mm\", \"0 mm\"]'",
-        program_coarse(20));
+        program_coarse(25));
     simulate(p, "half");
     program_succeed(
         p, "pre",

@@ -178,7 +178,7 @@ static void estimate_of_the_steps_knows_the_rate_terms(void **state) {
     for (int k = 0; k < 3; k++) {
         double expected = 0;
         program_result pre = program_succeed(*state, "pre", "'%s' -o cost.h5 --force %s --set %s",
-                                             fixture_source(EXAMPLE), program_coarse(20), foam[k]);
+                                             fixture_source(EXAMPLE), program_coarse(25), foam[k]);
         const char *line = strstr(pre.out, "for about ");
         assert_true(line && sscanf(line, "for about %lf steps", &expected) == 1);
         program_result solve = program_succeed(*state, "solve", "cost.h5 -o cost_results.h5 --force -t 1");
@@ -266,7 +266,7 @@ static void set_overrides_a_key_of_the_case(void **state) {
     program_succeed(p, "pre",
                     "'%s' -o slow.h5 %s --set missile.velocity='3.5 m/s' --set kernel.stabilisation=0.2 "
                     "--set output.fields='[\"displacement\"]'",
-                    fixture_source(EXAMPLE), program_coarse(20));
+                    fixture_source(EXAMPLE), program_coarse(25));
     assert_int_equal(sf_model_read(program_path(p, "slow.h5"), &model, NULL, &err), SF_OK);
     assert_close(model.missile.speed, 3.5, 1e-15);
     assert_close(model.run.stabilisation, 0.2, 1e-15);
@@ -397,7 +397,7 @@ static int interrupt(const program_place *p, int number) {
 static void interrupted_run_leaves_readable_results(void **state) {
     const program_place *p = *state;
     program_succeed(p, "pre", "'%s' -o long.h5 %s --set solver.step_safety=0.01 --force",
-                    fixture_source(EXAMPLE), program_coarse(20));
+                    fixture_source(EXAMPLE), program_coarse(25));
     int status = interrupt(p, SIGINT);
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), 130);

@@ -29,7 +29,7 @@ static void exchanged_groups_are_refused(void **state) {
     };
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         program_result r = program_run(p, "pre", "'%s' -o new.h5 %s %s", fixture_source(EXAMPLE),
-                                       program_coarse(20), rows[k].set);
+                                       program_coarse(25), rows[k].set);
         assert_int_not_equal(r.code, 0);
         if (!strstr(r.err, rows[k].part) || !strstr(r.err, "pad.contact"))
             fail_msg("\"%s\" is missing in: %s", rows[k].part, r.err);
@@ -231,7 +231,7 @@ static void sheet_drawn_either_way_is_one_model(void **state) {
         program_succeed(p, "pre",
                         "'%s' -o sheet%d.h5 %s --set geometry.missile_file=$PWD/sheet.geo --set "
                         "geometry.missile_parameters='{}' --set solver.end_time='2 ms'",
-                        fixture_source(EXAMPLE), k, program_coarse(20));
+                        fixture_source(EXAMPLE), k, program_coarse(25));
         program_result solved = program_succeed(p, "solve", "sheet%d.h5 -o sheet%d-r.h5", k, k);
         assert_null(strstr(solved.err, "passed between"));
         program_succeed(p, "post", "sheet%d-r.h5 -o sheet%d", k, k);
@@ -251,7 +251,7 @@ static void impact_point_is_reported(void **state) {
         "'%s' -o hit.h5 %s --set geometry.parameters.quarter=0 --set "
         "geometry.missile_parameters.quarter=0 --set 'missile.position=[\"-30 mm\", \"2 cm\"]' "
         "--set missile.gap='3 mm' --set solver.end_time='1 ms'",
-        fixture_source(EXAMPLE), program_coarse(20));
+        fixture_source(EXAMPLE), program_coarse(25));
     assert_non_null(strstr(pre.out, "(-30, 20) mm: there the missile's lowest point arrives"));
     program_succeed(p, "solve", "hit.h5 -o hit-r.h5");
     program_succeed(p, "post", "hit-r.h5 -o hit");
@@ -307,7 +307,7 @@ static void facets_within_facets_are_a_cavity(void **state) {
             p, "pre",
             "'%s' -o boxes.h5 --force %s --set geometry.missile_file=$PWD/boxes.geo --set "
             "geometry.missile_parameters='{}' --set geometry.parameters.quarter=0 --set missile.freedom=%s",
-            fixture_source(EXAMPLE), program_coarse(20), rows[k].freedom);
+            fixture_source(EXAMPLE), program_coarse(25), rows[k].freedom);
         if (!strstr(r.out, rows[k].said) && !strstr(r.err, rows[k].said))
             fail_msg("%zu: \"%s\" is missing in: %s%s", k, rows[k].said, r.out, r.err);
     }

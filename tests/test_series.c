@@ -25,7 +25,7 @@ static const char *const EXAMPLE = "examples/eva50-v4.5/case.cfg";
 /* A coarse model of a foam that remembers. */
 static program_result make_model(const program_place *p, const char *name, const char *more) {
     char coarse[512];
-    snprintf(coarse, sizeof coarse, "%s", program_coarse(20));
+    snprintf(coarse, sizeof coarse, "%s", program_coarse(25));
     return program_run(
         p, "pre",
         "'%s' -o %s --force %s --set material=@'%s' --set material.HU=0.05 --set material.ALPHA=0.5 "

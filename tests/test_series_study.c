@@ -33,7 +33,7 @@ static void what_a_study_cannot_judge_is_refused(void **state) {
                 {"series.counted=[1, 2]", "is not the last of the series"},
                 {"series.counted=[3, 4]", "is not the last of the series"}};
     for (size_t k = 0; k < sizeof sets / sizeof *sets; k++)
-        expect(program_run(p, "pre", "'%s' -o none %s --set '%s'", series, program_coarse(20), sets[k].set),
+        expect(program_run(p, "pre", "'%s' -o none %s --set '%s'", series, program_coarse(25), sets[k].set),
                sets[k].words);
     assert_int_equal(program_shell(p, "test -e none").code, 1);
 }

@@ -224,7 +224,7 @@ static program_result make_model(const program_place *p, const char *name, const
                        "'%s' -o %s --force %s --set material=@'%s' --set material.HU=0.05 --set "
                        "material.memory.reload=0.4 --set material.memory.set=0.05 --set "
                        "material.memory.set_recovery=0.1 %s",
-                       fixture_source(EXAMPLE), name, program_coarse(20),
+                       fixture_source(EXAMPLE), name, program_coarse(25),
                        fixture_source("tests/materials/eva35_first.cfg"), more);
 }
 

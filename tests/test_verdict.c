@@ -394,7 +394,7 @@ static void a_warning_of_softfall_solve_reaches_the_verdict(void **state) {
     program_place *p = *state;
     program_succeed(p, "pre",
                     "\"$SF_SOURCE_DIR/examples/eva50-v4.5/case.cfg\" -o m.h5 %s --set missile.gap='3 mm'",
-                    program_coarse(20));
+                    program_coarse(25));
     program_result r =
         program_succeed(p, "solve", "m.h5 -o results.h5 --force -t 1 --no-checkpoint --end-time='0.3 ms'");
     assert_non_null(strstr(r.err, "never touched"));
@@ -409,7 +409,7 @@ static double collapse_of_drop(program_place *p, const char *set) {
     program_succeed(p, "pre",
                     "\"$SF_SOURCE_DIR/examples/eva70-v6.2/case.cfg\" -o m.h5 --force %s "
                     "--set output.fields='[\"displacement\"]' --set solver.end_time='24 ms' %s",
-                    program_coarse(20), set);
+                    program_coarse(25), set);
     program_succeed(p, "solve", "m.h5 -o results.h5 --force -t 1 --no-checkpoint");
     program_succeed(p, "post", "results.h5 -o out --force");
     program_result r = program_shell(p, "python3 -c \"import json; print(json.load(open('out/summary.json'))"

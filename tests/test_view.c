@@ -246,8 +246,8 @@ static void words_about_the_test_stand_in_the_summary(void **state) {
         p, "pre",
         "good.cfg -o words.h5 %s --set solver.end_time='1 ms' --set report.conditions='23 °C, 50 %%' "
         "--set report.sample='tile \"A\" {1} [x] \\ </script> & co'",
-        program_coarse(20));
-    program_succeed(p, "pre", "good.cfg -o plain.h5 %s --set solver.end_time='1 ms'", program_coarse(20));
+        program_coarse(25));
+    program_succeed(p, "pre", "good.cfg -o plain.h5 %s --set solver.end_time='1 ms'", program_coarse(25));
     program_succeed(p, "solve", "words.h5 -o words_results.h5 -t 1");
     program_succeed(p, "solve", "plain.h5 -o plain_results.h5 -t 1");
     program_succeed(p, "post", "words_results.h5 -o words");
