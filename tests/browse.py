@@ -106,12 +106,18 @@ class Page:
         self.value("new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => r(1))))")
 
     def centre_of(self, identifier, across=0.5, down=0.5):
-        place, before = [], None
-        while place != before:  # until it has come to rest
-            before, place = place, self.value("(() => { const e = document.getElementById('%s'); e.scrollIntoView({block: 'nearest'}); const b = e.getBoundingClientRect(); "
-                                              "return [b.x + %g * b.width, b.y + %g * b.height]; })()" % (identifier, across, down))
-            self.settle()
-        return place
+        return self.value("(() => { const e = document.getElementById('%s'); e.scrollIntoView({block: 'nearest'}); const b = e.getBoundingClientRect(); "
+                          "return [b.x + %g * b.width, b.y + %g * b.height]; })()" % (identifier, across, down))
+
+    def press(self, identifier):
+        """Clicks a button; again if it had moved away meanwhile, as what is above it grew."""
+        self.value("(() => { const e = document.getElementById('%s'); delete e.dataset.heard; "
+                   "e.addEventListener('click', () => { e.dataset.heard = 1; }, {once: true}); })()" % identifier)
+        for _ in range(5):
+            self.click(*self.centre_of(identifier))
+            if self.value("document.getElementById('%s').dataset.heard === '1'" % identifier):
+                return
+        raise SystemExit("%s hears no click" % identifier)
 
     def click(self, x, y):
         for kind in ("mousePressed", "mouseReleased"):

@@ -173,7 +173,7 @@ def test_the_first_run(page, service):
     assert text(page, "verdict") in ("live answer", "valid", "valid with remarks", "do not use")
     page.write("field-missile.velocity", "4.4 m/s")
     page.wait_for("document.getElementById('verdict').textContent === 'live answer'")
-    page.click(*page.centre_of("run"))
+    page.press("run")
     job = service.wait("done")
     page.wait_for(f"document.getElementById('report').getAttribute('href') === 'runs/{job['id']}/report.html'")
     page.wait_for("!document.getElementById('controls').hidden")
@@ -249,10 +249,10 @@ def test_a_measured_file_lies_beside_the_drop(page):
 def test_a_run_can_be_stopped_and_goes_on(page, service):
     page.write("field-geometry.parameters.fine_spacing", "8")
     page.wait_for("!document.getElementById('run').disabled")
-    page.click(*page.centre_of("run"))
+    page.press("run")
     page.wait_for("!document.getElementById('stop').hidden && document.getElementById('what').textContent.startsWith('solving')")
     page.wait_for("document.querySelector('#chart polyline')?.getAttribute('points').split(' ').length > 2")
-    page.click(*page.centre_of("stop"))
+    page.press("stop")
     assert service.wait("stopped")["id"] is None
     page.wait_for("document.getElementById('run').textContent === 'Go on'")
     page.write("field-geometry.parameters.fine_spacing", "20")
@@ -266,7 +266,7 @@ def test_two_tabs_show_one_run(page, service):
     page.wait_for("document.querySelectorAll('.field').length > 20")
     page.write("field-missile.velocity", "4.3 m/s")
     page.wait_for("!document.getElementById('run').disabled")
-    page.click(*page.centre_of("run"))
+    page.press("run")
     job = service.wait("done")
     for session in (second, first):
         page.session = session
