@@ -62,7 +62,7 @@ static int set_up(void **state) {
         p, "pre",
         "'%s' -o model.h5 %s --set output.frame_interval='\"1 ms\"' --set solver.step_safety=%.3f "
         "--set solver.end_time='\"20 ms\"'",
-        fixture_source(EXAMPLE), program_coarse(25), 2.0 / kill_count());
+        fixture_source(EXAMPLE), program_coarse(20), 2.0 / kill_count());
     double start = time_of_children();
     program_succeed(p, "solve", "model.h5 -o start.h5 --threads 1 --no-checkpoint --end-time '0.05 ms'");
     start_time = time_of_children() - start;
@@ -102,7 +102,7 @@ static void hyperfoam_goes_on_with_the_same_bits(void **state) {
                     "material.BETA1='\"4000 1/s\"' --set material.rate_factor=0.2 --set "
                     "material.rate_reference='\"0.01 1/s\"' --set material.ALPHA=0.6 --set "
                     "solver.end_time='\"6 ms\"'",
-                    fixture_source(EXAMPLE), program_coarse(25),
+                    fixture_source(EXAMPLE), program_coarse(20),
                     fixture_source("examples/materials/vn600_slow.cfg"));
     program_succeed(p, "solve", "hyper.h5 -o hyper_full.h5 --threads 1");
     program_succeed(p, "solve", "hyper.h5 -o hyper_parts.h5 --end-time '2.3 ms' --threads 2");
@@ -116,7 +116,7 @@ static void rate_factor_goes_on_with_the_same_bits(void **state) {
     program_succeed(p, "pre",
                     "'%s' -o rate.h5 %s --set 'material.ED=0 Pa' --set material.rate_factor=0.2 --set "
                     "material.rate_reference='\"1 1/s\"' --set solver.end_time='\"6 ms\"'",
-                    fixture_source(EXAMPLE), program_coarse(25));
+                    fixture_source(EXAMPLE), program_coarse(20));
     program_succeed(p, "solve", "rate.h5 -o rate_full.h5 --threads 1");
     program_succeed(p, "solve", "rate.h5 -o rate_parts.h5 --end-time '2.3 ms' --threads 2");
     program_succeed(p, "solve", "--restart rate_parts.h5 --end-time '6 ms' --threads 2");
@@ -281,7 +281,7 @@ static void failed_run_keeps_two_peaks(void **state) {
     static const char *const options[] = {"--no-checkpoint", "", "--checkpoint-time '1.5 ms'"};
     const program_place *p = *state;
     program_succeed(p, "pre", "'%s' -o rising.h5 %s " FAILING " --set output.fields='[\"velocity\"]'",
-                    fixture_source(EXAMPLE), program_coarse(25));
+                    fixture_source(EXAMPLE), program_coarse(20));
     for (int k = 0; k < 3; k++) {
         program_result result = program_run(p, "solve", "rising.h5 -o rising_%d.h5 -t 1 %s", k, options[k]);
         assert_int_equal(result.code, SF_ERR_NUMERIC);
@@ -301,7 +301,7 @@ static void failure_in_the_first_step_has_results(void **state) {
     const program_place *p = *state;
     program_succeed(p, "pre",
                     "'%s' -o stiff.h5 %s --set material.E='\"20 GPa\"' --set output.frame_interval='\"1 s\"'",
-                    fixture_source(EXAMPLE), program_coarse(25));
+                    fixture_source(EXAMPLE), program_coarse(20));
     program_result result = program_run(p, "solve", "stiff.h5 -o stiff_results.h5 -t 1 --end-time '1000 s'");
     assert_int_equal(result.code, SF_ERR_NUMERIC);
     assert_non_null(strstr(result.err, "at t = 0 s the stable time step fell to"));
@@ -377,7 +377,7 @@ static void damaged_or_foreign_checkpoint_is_refused(void **state) {
     program_write_file(program_path(p, "part.h5.restart"), good.data, good.size);
 
     program_succeed(p, "pre", "'%s' -o other.h5 %s --set missile.mass='\"4.7 kg\"' --force",
-                    fixture_source(EXAMPLE), program_coarse(25));
+                    fixture_source(EXAMPLE), program_coarse(20));
     assert_refused(p, SF_ERR_INPUT, "other.h5 is not the model of part.h5.restart: its hash is ", "other.h5");
     assert_refused(p, SF_ERR_INPUT, "beyond the end time 0.002 s", "--end-time '2 ms'");
     assert_refused(p, SF_ERR_INPUT, "--end-time: ", "--end-time '2 kg' 2>&1 | head -1 >&2; exit 2");
@@ -539,7 +539,7 @@ static void failed_run_leaves_its_state(void **state) {
     sf_results r;
     long long node, step, held;
     double time, held_time;
-    program_succeed(p, "pre", "'%s' -o fast.h5 %s " FAILING, fixture_source(EXAMPLE), program_coarse(25));
+    program_succeed(p, "pre", "'%s' -o fast.h5 %s " FAILING, fixture_source(EXAMPLE), program_coarse(20));
     program_result first = program_run(p, "solve", "fast.h5 -o fast_results.h5 -t 1");
     assert_int_equal(first.code, SF_ERR_NUMERIC);
     const char *sentence = strstr(first.err, "softfall-solve: at t = "), *at = strstr(first.err, "node "),
@@ -580,7 +580,7 @@ static void overflow_leaves_the_last_finite_state(void **state) {
     sf_model m;
     sf_results r;
     sf_frame frame;
-    program_succeed(p, "pre", "'%s' -o absurd.h5 %s", fixture_source(EXAMPLE), program_coarse(25));
+    program_succeed(p, "pre", "'%s' -o absurd.h5 %s", fixture_source(EXAMPLE), program_coarse(20));
     assert_int_equal(sf_model_read(program_path(p, "absurd.h5"), &m, NULL, &err), SF_OK);
     sf_foam_card *card = m.material[0].card;
     for (int64_t i = 0; i < card->curve_points; i++)
@@ -611,7 +611,7 @@ static void overflow_leaves_the_last_finite_state(void **state) {
 static void rebounded_run_goes_on_when_an_end_time_is_given(void **state) {
     const program_place *p = *state;
     sf_results r;
-    program_succeed(p, "pre", "'%s' -o bounce.h5 %s", fixture_source(EXAMPLE), program_coarse(25));
+    program_succeed(p, "pre", "'%s' -o bounce.h5 %s", fixture_source(EXAMPLE), program_coarse(20));
     program_succeed(p, "solve", "bounce.h5 -o bounced.h5 -t 1");
     double rebound = last_frame(p, "bounced.h5", &r);
     assert_string_equal(r.status, "rebound");
