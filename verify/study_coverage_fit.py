@@ -195,7 +195,7 @@ def report(rows: list[dict[str, str]], folder: Path) -> int:
                 place = f"{name}_{key}"
                 return float(np.mean([float(row[f"{which}{place}_low{share}"]) <= float(row[place]) <= float(row[f"{which}{place}_high{share}"]) for row in part])) if part else math.nan
             values = [[float(row[f"{name}_{key}{end}"]) for end in ("_low95", "_high95", "_median", "")] for row in good]
-            width = np.median([0.5 * math.log(high / low) for low, high, *_ in values])
+            width = np.median([0.5 * math.log(high / low) if math.isfinite(high) else math.inf for low, high, *_ in values])
             off = np.median([abs(math.log(median / truth)) for *_, median, truth in values])
             locks = [[row for row in good if int(row["locks"]) == word] for word in (1, 0)]
             all_of = held("", good)
