@@ -110,7 +110,7 @@ class Page:
                           "return [b.x + %g * b.width, b.y + %g * b.height]; })()" % (identifier, across, down))
 
     def press(self, identifier):
-        """Clicks a button; again if it had moved away meanwhile, as what is above it grew."""
+        """Clicks a button; again if it has moved, as the page above it has grown."""
         self.value("(() => { const e = document.getElementById('%s'); delete e.dataset.heard; "
                    "e.addEventListener('click', () => { e.dataset.heard = 1; }, {once: true}); })()" % identifier)
         for _ in range(5):

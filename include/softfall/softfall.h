@@ -122,7 +122,8 @@ SOFTFALL_API softfall_status softfall_units_hold(softfall_error *error);
 
 /* Sets how softfall_model_build builds: `share`, a folder, or NULL: takes meshes, smoothing domains and
  * what drops of the section told from there where a case of the same geometry has left them, and leaves them
- * there, also for other processes.
+ * there, also for other processes. The environment variable SOFTFALL_SHARE stands before `share`, and is
+ * the folder of a case for which this is not called.
  * `section` 1: runs the drops of its section, or of a plate like it, that tell the errors by its mesh, as
  * softfall-pre does.
  */

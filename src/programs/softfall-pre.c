@@ -38,7 +38,7 @@ static const sf_option list[] = {
     {"force", 'f', NULL, "replace an existing model file", .member = offsetof(options, force)},
     {"share", 0, "DIR",
      "take the mesh, the smoothing domains and what drops of the section told from this folder if an earlier "
-     "drop of the same geometry and kernel left them there, and leave them there; SOFTFALL_SHARE=DIR names one for all programs",
+     "drop of the same geometry and kernel left them there, and leave them there; SOFTFALL_SHARE=DIR names one for all programs and the library",
      .member = offsetof(options, store)},
     {"keys", 0, NULL, "list every key of a case file and end", .member = offsetof(options, keys)},
     {0},

@@ -2,7 +2,9 @@
 """Drops in memory: keys by content, figures as of the programs, and what a study refuses."""
 from __future__ import annotations
 
+import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import softfall
-from softfall import library, memory, programs
+from softfall import library, memory, programs, worker
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 COARSE = ["geometry.parameters.fine_spacing=20.0", "geometry.parameters.outer_spacing=40.0", "pad.mesh_error_limit=9.0"]
@@ -87,6 +89,29 @@ def test_another_library_takes_no_domains_of_the_first(tmp_path: Path, monkeypat
             with open(tmp_path / "copy/lib/libsoftfall-build.so", "ab") as library_file:
                 library_file.write(b"another")
     assert made == [1, 1, 2]
+
+
+def test_a_free_worker_serves_the_next_pool(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that has ended, or began with other settings, does not, nor one of a fit, which keeps models."""
+    def process() -> int:
+        with worker.Pool(1, tmp_path / "shared") as pool:
+            assert pool.start(worker.Task("key", "absent.cfg", [])).result().message
+            return pool._all[0]._process.pid
+
+    with worker.kept():
+        first = process()
+        assert process() == first
+        monkeypatch.setenv("SOFTFALL_MEMORY_MB", "4000")
+        second = process()
+        assert second != first and process() == second
+        os.kill(second, signal.SIGKILL)
+        os.waitid(os.P_PID, second, os.WEXITED | os.WNOWAIT)
+        assert process() != second
+        with worker.Pool(1, tmp_path / "shared", "softfall.fit.work") as pool:
+            pool._all.append(fits := worker._begin("softfall.fit.work"))
+            pool._free.get()
+            pool._free.put(fits)
+        assert not fits.is_alive()
 
 
 def test_what_the_solver_notes_of_a_foam_is_part_of_the_verdict(tmp_path: Path) -> None:

@@ -88,8 +88,8 @@ def look_at_curve(s: Study) -> None:
 def extrapolated(s: Study) -> list[str]:
     """Returns which predicted drops strain the foam beyond what was measured, in words."""
     deep = [(drop.name, s.fit.own[d].get("max_local_strain")) for d, drop in enumerate(s.given.drops) if drop.predicted and not s.fit.own[d].failure]
-    return [f"{name} strains the foam to {strain:.3f}, the data to {s.informed[1]:.3f}: its interval is an extrapolation, and holds the truth less often than it says, least of all for "
-            "a foam that locks up early or with narrow priors of the pole, ALPHA and rate_factor (docs/validation.md, coverage)" for name, strain in deep if strain > s.informed[1]]
+    return [f"{name} strains the foam to {strain:.3f}, the data to {s.informed[1]:.3f}: its interval is an extrapolation, and holds the truth less often than it says: "
+            "measure a drop that strains the foam as far, or at least give the pole, ALPHA and rate_factor wide priors (docs/validation.md, coverage)" for name, strain in deep if strain > s.informed[1]]
 
 
 def provenance(s: Study) -> str:
