@@ -361,22 +361,25 @@ static void integral_of_unloading_is_that_of_quadrature(void **state) {
 static void alpha_of_one_is_the_old_law(void **state) {
     (void)state;
     sf_unloading old, near;
-    double energy[SF_LANES], peak[2][SF_LANES], out[2][4][SF_LANES];
+    double energy[SF_LANES], peak[2][SF_LANES];
+    sf_unloaded out[2];
     sf_unloading_build(0.05, 1.7, 1, &old);
     sf_unloading_build(0.05, 1.7, 1 + 1e-9, &near);
     for (int l = 0; l < SF_LANES; l++) {
         energy[l] = 1e3 * l;
         peak[0][l] = peak[1][l] = 12.5e3;
     }
-    sf_unloading_lanes(&old, energy, peak[0], out[0][0], out[0][1], out[0][2], out[0][3]);
-    sf_unloading_lanes(&near, energy, peak[1], out[1][0], out[1][1], out[1][2], out[1][3]);
+    sf_unloading_lanes(&old, energy, peak[0], &out[0]);
+    sf_unloading_lanes(&near, energy, peak[1], &out[1]);
     for (int l = 0; l < SF_LANES; l++) {
         double w = fmin(1, energy[l] / 12.5e3), most = fmax(energy[l], 12.5e3);
-        assert_relative(out[0][0][l], 1 - 0.95 * (1 - pow(w, 1.7)), 1e-14);
-        assert_close(out[0][2][l], energy[l] * (0.05 + 0.95 * pow(w, 1.7) / 2.7), 1e-11 * most);
-        assert_relative(out[0][3][l], most * 0.95 * 1.7 / 2.7, 1e-14);
-        for (int k = 0; k < 4; k++)
-            assert_close(out[1][k][l], out[0][k][l], 2e-8 * fabs(out[0][k][l]) + 1e-8);
+        assert_relative(out[0].factor[l], 1 - 0.95 * (1 - pow(w, 1.7)), 1e-14);
+        assert_close(out[0].stored[l], energy[l] * (0.05 + 0.95 * pow(w, 1.7) / 2.7), 1e-11 * most);
+        assert_relative(out[0].lost[l], most * 0.95 * 1.7 / 2.7, 1e-14);
+        assert_close(out[1].factor[l], out[0].factor[l], 3e-8);
+        assert_close(out[1].softening[l], out[0].softening[l], 2e-8 * out[0].softening[l] + 1e-8);
+        assert_close(out[1].stored[l], out[0].stored[l], 2e-8 * out[0].stored[l] + 1e-8);
+        assert_close(out[1].lost[l], out[0].lost[l], 2e-8 * out[0].lost[l] + 1e-8);
         assert_true(peak[0][l] == most && peak[1][l] == most);
     }
 }
@@ -433,20 +436,20 @@ static void bound_on_the_reversal_is_a_secant(void **state) {
     sf_unloading u;
     sf_unloading_build(0.02, 1.5, 0.3, &u);
     for (int k = 0; k < 60; k++) {
-        double gap = pow(10, -9 + 0.15 * k), energy[SF_LANES], peak[SF_LANES], out[4][SF_LANES],
-               h = 1e-4 * gap;
+        double gap = pow(10, -9 + 0.15 * k), energy[SF_LANES], peak[SF_LANES], h = 1e-4 * gap;
+        sf_unloaded out;
         for (int l = 0; l < SF_LANES; l++) {
             energy[l] = 1 - gap;
             peak[l] = 1;
         }
-        sf_unloading_lanes(&u, energy, peak, out[0], out[1], out[2], out[3]);
+        sf_unloading_lanes(&u, energy, peak, &out);
         double slope = (sf_unloading_factor(0.02, 1.5, 0.3, 1 - gap + h) -
                         sf_unloading_factor(0.02, 1.5, 0.3, 1 - gap - h)) /
                        (2 * h);
         if (gap > 1e-3)
-            assert_relative(out[1][0], slope, 1e-5);
+            assert_relative(out.softening[0], slope, 1e-5);
         else
-            assert_true(out[1][0] >= fmin(slope * (1 - 1e-4), u.steepest));
+            assert_true(out.softening[0] >= fmin(slope * (1 - 1e-4), u.steepest));
         double width = 1e-3, high = 1 - gap, low = high - width;
         if (low > 0)
             assert_true(sf_unloading_factor(0.02, 1.5, 0.3, high) -

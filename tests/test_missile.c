@@ -198,7 +198,7 @@ static void the_surface_goes_with_the_pose(void **state) {
         for (int k = 0; k < 3; k++)
             r[k] = x[k] - centre[k] + (ahead ? step[k] - away[k] : 0);
         if (ahead)
-            assert_true(sf_missile_gap_ahead(&m, &missile, &response, &surface, x, step, &gap, normal));
+            assert_true(sf_missile_gap_ahead(&m, &response, &surface, x, step, &gap, normal));
         else
             assert_true(sf_missile_gap(&m, &missile, &surface, x, &gap, normal));
         double distance = sqrt(sf_dot3(r, r));

@@ -240,7 +240,7 @@ static void the_surface_turns_with_the_body(void **state) {
         sf_missile_response response = sf_missile_predict(&m, &missile, time, dt, step > 0 ? dt : 0);
         const double step_of[3] = {1e-5, 0, 2e-5};
         double ahead[3], foreseen, found, turned[3];
-        assert_true(sf_missile_gap_ahead(&m, &missile, &response, &surface, x, step_of, &foreseen, normal));
+        assert_true(sf_missile_gap_ahead(&m, &response, &surface, x, step_of, &foreseen, normal));
         for (int k = 0; k < 3; k++)
             ahead[k] = x[k] + step_of[k];
         take_step(&m, &missile, step, dt, NULL);

@@ -439,21 +439,28 @@ SOFTFALL_API softfall_status softfall_batch_run(const softfall_model *const *mod
 
 /* Curves [count] are piecewise linear over `time`, in s, ascending. */
 
-/* Head injury criterion of a deceleration in g, with windows of at most `window` s (INFINITY: no limit), and
- * the window where it is reached, in s: NaN if the curve never decelerates. `t1` and `t2` may be NULL. */
+/* Head injury criterion of a deceleration in g, with windows of at most `window` s (INFINITY: no limit): its
+ * value, and the start and the end (s) of the window where it is reached. The value is NaN if the curve never
+ * decelerates. */
 SOFTFALL_API softfall_status softfall_hic(const double *time, const double *deceleration, int64_t count,
-                                          double window, double *hic, double *t1, double *t2,
-                                          softfall_error *error);
+                                          double window, double hic[3], softfall_error *error);
 /* Values of the curve filtered with a channel frequency class, at the same times, as softfall-post filters a
  * measured curve: at its own rate if that is uniform. `filtered` [count] belongs to the caller. */
 SOFTFALL_API softfall_status softfall_cfc(const double *time, const double *value, int64_t count,
                                           double filter, double *filtered, softfall_error *error);
-/* Reads a deceleration in g, which has begun at rest, as an instrument does: through the accelerometer's
- * mount, of `chain[0]` Hz (0: rigid) and damping `chain[1]`, and a high pass with the time constant
- * `chain[2]` (s; 0: none), then filtered with CFC `filter`. Fills `read` [count] at the same times, and
- * `contact`, the instant at which contact begins by the curve alone, as softfall-post aligns it. */
+/* The instrument that a deceleration passes before it is read. */
+typedef struct softfall_instrument {
+    double frequency; /* Hz, of the accelerometer on its mount; 0: rigid */
+    double damping;   /* -, of the mount, between 0 and 1 */
+    double coupling;  /* s, time constant of a high pass; 0: none */
+    double filter;    /* channel frequency class */
+} softfall_instrument;
+
+/* Reads a deceleration in g, which has begun at rest, as an instrument does. Fills `read` [count] at the same
+ * times, and `contact` (s), the instant at which contact begins by the curve alone, as softfall-post aligns
+ * it. */
 SOFTFALL_API softfall_status softfall_reading(const double *time, const double *value, int64_t count,
-                                              const double chain[3], double filter, double *read,
+                                              const softfall_instrument *instrument, double *read,
                                               double *contact, softfall_error *error);
 /* A figure at ever finer meshes and its error, `refined`, from those at a spacing and at `ratio` times it
  * (docs/python.md, "Two meshes for one answer"). `cells`: the finer mesh's number of cells over the coarser

@@ -330,17 +330,16 @@ class Form:
 def reading(time: Any, deceleration: Any, chain: Sequence[float], channel_class: float) -> tuple[Array, float]:
     """softfall_reading: the curve as an instrument reads it, and the instant of contact (s)."""
     read, contact = np.empty_like(deceleration), c.c_double()
-    _call("softfall_reading", _array(time), _array(deceleration), c.c_int64(time.size), (c.c_double * 3)(*chain), c.c_double(channel_class), _array(read),
-          c.byref(contact))
+    instrument = (c.c_double * 4)(*chain, channel_class)  # a softfall_instrument
+    _call("softfall_reading", _array(time), _array(deceleration), c.c_int64(time.size), instrument, _array(read), c.byref(contact))
     return read, contact.value
 
 
 def hic(time: Any, deceleration: Any, window: float) -> tuple[float, float, float]:
     """softfall_hic: value and window; arrays of double of one length."""
-    value, t1, t2 = c.c_double(), c.c_double(), c.c_double()
-    _call("softfall_hic", _array(time), _array(deceleration), c.c_int64(time.size), c.c_double(window), c.byref(value),
-          c.byref(t1), c.byref(t2))
-    return value.value, t1.value, t2.value
+    found = (c.c_double * 3)()
+    _call("softfall_hic", _array(time), _array(deceleration), c.c_int64(time.size), c.c_double(window), found)
+    return found[0], found[1], found[2]
 
 
 def cfc(time: Any, value: Any, channel_class: float, out: Any) -> None:

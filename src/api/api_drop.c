@@ -471,7 +471,7 @@ static sf_series borrow(const double *time, const double *value, int64_t count) 
 }
 
 softfall_status softfall_hic(const double *time, const double *deceleration, int64_t count, double window,
-                             double *hic, double *t1, double *t2, softfall_error *error) {
+                             double hic[3], softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     const sf_series curve = borrow(time, deceleration, count);
     sf_hic found = {0};
@@ -479,11 +479,9 @@ softfall_status softfall_hic(const double *time, const double *deceleration, int
         SF_REFUSE(&err, "window: %g s" SF_NOT_ABOVE_0, window);
     else if (sf_series_check(&curve, "the deceleration", &err) == SF_OK)
         sf_hic_evaluate(&curve, window, &found, &err);
-    *hic = err.status == SF_OK ? found.value : NAN;
-    if (t1)
-        *t1 = found.t1;
-    if (t2)
-        *t2 = found.t2;
+    hic[0] = err.status == SF_OK ? found.value : NAN;
+    hic[1] = found.t1;
+    hic[2] = found.t2;
     return softfall_return(&err, error);
 }
 
@@ -500,31 +498,32 @@ softfall_status softfall_cfc(const double *time, const double *value, int64_t co
     return softfall_return(&err, error);
 }
 
-static sf_status read_curve(const sf_series *curve, const double chain[3], double filter, double *read,
+static sf_status read_curve(const sf_series *curve, const softfall_instrument *by, double *read,
                             double *contact, sf_error *err) {
     SF_OWNED_BY(sf_series_free) sf_series uniform = {0}, made = {0};
-    const sf_signal_chain passed = {chain[0], chain[1], chain[2]};
-    SF_TRY(check_filter(filter, err));
-    if (!(chain[0] >= 0 && chain[2] >= 0) || (chain[0] > 0 && !(chain[1] > 0 && chain[1] < 1)))
+    const sf_signal_chain passed = {by->frequency, by->damping, by->coupling};
+    SF_TRY(check_filter(by->filter, err));
+    if (!(by->frequency >= 0 && by->coupling >= 0) ||
+        (by->frequency > 0 && !(by->damping > 0 && by->damping < 1)))
         return SF_REFUSE(err,
                          "a mount of %g Hz with damping %g, or a coupling of %g s: frequency and time are "
                          "from 0 on, damping is between 0 and 1",
-                         chain[0], chain[1], chain[2]);
+                         by->frequency, by->damping, by->coupling);
     SF_TRY(sf_series_check(curve, "the curve to read", err));
     SF_TRY(sf_signal_resample(curve, sf_signal_rate(curve), &uniform, err));
     sf_signal_pass(&passed, &uniform);
-    SF_TRY(sf_signal_filter_cfc(&uniform, filter, &made, err));
+    SF_TRY(sf_signal_filter_cfc(&uniform, by->filter, &made, err));
     for (int64_t i = 0; i < curve->count; i++)
         read[i] = sf_series_at(&made, curve->time[i]);
     return sf_contact_instant(&made, "the curve to read", 0, contact, err);
 }
 
 softfall_status softfall_reading(const double *time, const double *value, int64_t count,
-                                 const double chain[3], double filter, double *read, double *contact,
+                                 const softfall_instrument *instrument, double *read, double *contact,
                                  softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
     const sf_series curve = borrow(time, value, count);
-    read_curve(&curve, chain, filter, read, contact, &err);
+    read_curve(&curve, instrument, read, contact, &err);
     return softfall_return(&err, error);
 }
 

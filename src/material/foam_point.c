@@ -28,11 +28,13 @@ sf_foam_options sf_foam_options_build(const sf_foam_shared *card) {
 
 enum { MAX_SWEEPS = 8 };
 
-/* One rotation in the plane (p, q); r is the third index. The columns of v are given by their first row's
- * pointer: element (row, column) of v is v[3 * row + column]. With d = aqq - app, h = sqrt(d^2 + 4 apq^2) the
- * tangent of the angle is 2 apq / (d +- h), and the eigenvalues move by (h - |d|) / 2. */
-static inline void rotate(double *restrict app, double *restrict aqq, double *restrict apq,
-                          double *restrict arp, double *restrict arq, double v[9][SF_LANES], int p, int q) {
+/* One rotation of a, (xx, yy, zz, xy, yz, xz), in the plane (p, q); r is the third index. Element (row,
+ * column) of v is v[3 * row + column]. With d = aqq - app, h = sqrt(d^2 + 4 apq^2) the tangent of the angle
+ * is 2 apq / (d +- h), and the eigenvalues move by (h - |d|) / 2. */
+static inline void rotate(double a[6][SF_LANES], double v[9][SF_LANES], int p, int q) {
+    int third = 3 - p - q;
+    double *restrict app = a[p], *restrict aqq = a[q], *restrict apq = a[SYM[p][q]],
+                     *restrict arp = a[SYM[third][p]], *restrict arq = a[SYM[third][q]];
     double c[SF_LANES], s[SF_LANES];
     SF_EACH_LANE (l) {
         double d = aqq[l] - app[l], o = 2 * apq[l], oo = o * o;
@@ -50,9 +52,9 @@ static inline void rotate(double *restrict app, double *restrict aqq, double *re
     for (int row = 0; row < 3; row++) {
         double *restrict vp = v[3 * row + p], *restrict vq = v[3 * row + q];
         SF_EACH_LANE (l) {
-            double a = vp[l], b = vq[l];
-            vp[l] = c[l] * a - s[l] * b;
-            vq[l] = s[l] * a + c[l] * b;
+            double left = vp[l], right = vq[l];
+            vp[l] = c[l] * left - s[l] * right;
+            vq[l] = s[l] * left + c[l] * right;
         }
     }
 }
@@ -71,9 +73,9 @@ SF_KERNEL void sf_foam_eigen(double a[6][SF_LANES], double v[9][SF_LANES]) {
         }
         if (!left)
             break;
-        rotate(a[0], a[1], a[3], a[5], a[4], v, 0, 1);
-        rotate(a[0], a[2], a[5], a[3], a[4], v, 0, 2);
-        rotate(a[1], a[2], a[4], a[3], a[5], v, 1, 2);
+        rotate(a, v, 0, 1);
+        rotate(a, v, 0, 2);
+        rotate(a, v, 1, 2);
     }
 }
 
@@ -332,29 +334,49 @@ static void directional(double dt, double v[9][SF_LANES], sf_law_batch *b) {
     compose(effective, v, b->directional);
 }
 
+/* Strain of a batch; each tensor is (xx, yy, zz, xy, yz, xz). */
+typedef struct strain {
+    double c[6][SF_LANES];    /* C = Ft F */
+    double rate[6][SF_LANES]; /* s-1, of the Green strain over the step; 0 without one */
+} strain;
+
+static void strain_find(sf_law_batch *b, double dt, strain *e) {
+    double old[6][SF_LANES], half = 0.5 / dt;
+    right_cauchy_green(b->f, e->c);
+    memset(e->rate, 0, sizeof e->rate);
+    if (!(dt > 0))
+        return;
+    right_cauchy_green(b->f_old, old);
+    for (int k = 0; k < 6; k++)
+        SF_EACH_LANE (l)
+            e->rate[k][l] = half * (e->c[k][l] - old[k][l]);
+}
+
 /* Elastic part of every lane: second Piola-Kirchhoff stress into s [6][lane], with energies and bounds; `eta`
  * is the viscosity of DAMP. */
 static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind, double dt, sf_law_batch *b,
-                           double c[6][SF_LANES], double rate_of_e[6][SF_LANES], double s[6][SF_LANES],
-                           double eta[SF_LANES]) {
-    double eigen[6][SF_LANES], softening[SF_LANES], rest = kind->rest;
+                           strain *e, double s[6][SF_LANES], double eta[SF_LANES]) {
+    double eigen[6][SF_LANES], rest = kind->rest;
     sf_foam_rate rate;
     sf_foam_loading law;
-    memcpy(eigen, c, sizeof eigen);
+    sf_unloaded made;
+    memcpy(eigen, e->c, sizeof eigen);
     sf_foam_eigen(eigen, rate.v);
     for (int i = 0; i < 3; i++)
         SF_EACH_LANE (l)
             b->stretch[i][l] = sqrt(eigen[i][l]);
     kind->loading(kind->numbers, b->stretch, &law);
     if (kind->ahead && dt > 0)
-        look_ahead(kind, dt, b, rate_of_e, &law);
+        look_ahead(kind, dt, b, e->rate, &law);
     memcpy(b->energy, law.energy, sizeof b->energy);
     if (sf_memory_acts(&foam->memory))
         sf_memory_lanes(&foam->memory, &foam->unloading, b->energy, b->history[SF_FOAM_PEAK],
-                        b->history + SF_FOAM_MEMORY, b->factor, softening, b->stored, b->lost);
+                        b->history + SF_FOAM_MEMORY, &made);
     else
-        sf_unloading_lanes(&foam->unloading, b->energy, b->history[SF_FOAM_PEAK], b->factor, softening,
-                           b->stored, b->lost);
+        sf_unloading_lanes(&foam->unloading, b->energy, b->history[SF_FOAM_PEAK], &made);
+    memcpy(b->factor, made.factor, sizeof b->factor);
+    memcpy(b->stored, made.stored, sizeof b->stored);
+    memcpy(b->lost, made.lost, sizeof b->lost);
     for (int i = 0; i < 3; i++)
         SF_EACH_LANE (l)
             rate.part[i][l] = b->factor[l] * law.t[i][l] / b->stretch[i][l];
@@ -365,12 +387,12 @@ static void elastic_stress(const sf_foam_options *foam, const sf_foam_kind *kind
         rate.factor[l] = b->factor[l];
     }
     if ((kind->overstress || foam->rate_factor > 0) && dt > 0) {
-        green_rates(rate.v, rate_of_e, rate.green);
-        rate_stress(foam, kind, dt, b, &law, rate_of_e, &rate);
+        green_rates(rate.v, e->rate, rate.green);
+        rate_stress(foam, kind, dt, b, &law, e->rate, &rate);
     }
     compose(rate.part, rate.v, s);
     damp_viscosity(foam, b, eta);
-    tangent_elastic(&(principal){b->stretch, law.t, law.steepest, rate.factor, softening}, foam->maxwell,
+    tangent_elastic(&(principal){b->stretch, law.t, law.steepest, rate.factor, made.softening}, foam->maxwell,
                     b->direction_tangent);
     tangent_viscous(b->stretch, foam->kelvin, eta, b->direction_viscosity);
     for (int i = 0; i < 3; i++)
@@ -444,19 +466,12 @@ static void damping_stress(double dt, const double eta[SF_LANES], double a[9][SF
 
 SF_KERNEL void sf_foam_point_update(const sf_foam_options *foam, const sf_foam_kind *kind, double dt,
                                     sf_law_batch *b) {
-    double c[6][SF_LANES], old[6][SF_LANES], rate_of_e[6][SF_LANES] = {{0}}, s[6][SF_LANES], a[9][SF_LANES],
-                                             eta[SF_LANES];
-    right_cauchy_green(b->f, c);
-    if (dt > 0) {
-        right_cauchy_green(b->f_old, old);
-        double half = 0.5 / dt;
-        for (int k = 0; k < 6; k++)
-            SF_EACH_LANE (l)
-                rate_of_e[k][l] = half * (c[k][l] - old[k][l]);
-    }
+    strain e;
+    double s[6][SF_LANES], a[9][SF_LANES], eta[SF_LANES];
+    strain_find(b, dt, &e);
     cofactor(b, a);
-    elastic_stress(foam, kind, dt, b, c, rate_of_e, s, eta);
-    viscous_stress(foam, dt, b, rate_of_e, s);
+    elastic_stress(foam, kind, dt, b, &e, s, eta);
+    viscous_stress(foam, dt, b, e.rate, s);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             SF_EACH_LANE (l)

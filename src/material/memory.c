@@ -45,23 +45,21 @@ double sf_unloading_integral(const sf_unloading *o, double ratio) {
 
 /* ALPHA = 1; `power` is w^SHAPE, 1 while loading. */
 static inline void straight(const sf_unloading *o, const double energy[SF_LANES], double peak[SF_LANES],
-                            const double power[SF_LANES], double factor[SF_LANES], double softening[SF_LANES],
-                            double stored[SF_LANES], double lost[SF_LANES]) {
+                            const double power[SF_LANES], sf_unloaded *out) {
     double hu = o->hu, shape = o->shape, kept = (1 - hu) / (1 + shape);
     SF_EACH_LANE (l) {
         double w = energy[l], ratio = (1 - hu) * shape * power[l] / w;
         bool unloaded = w < peak[l];
-        factor[l] = unloaded ? 1 - (1 - hu) * (1 - power[l]) : 1;
-        softening[l] = unloaded && w > 0 ? ratio : 0;
+        out->factor[l] = unloaded ? 1 - (1 - hu) * (1 - power[l]) : 1;
+        out->softening[l] = unloaded && w > 0 ? ratio : 0;
         peak[l] = unloaded ? peak[l] : w;
-        stored[l] = w * (hu + kept * power[l]);
-        lost[l] = peak[l] * kept * shape;
+        out->stored[l] = w * (hu + kept * power[l]);
+        out->lost[l] = peak[l] * kept * shape;
     }
 }
 
 static inline void curved(const sf_unloading *o, const double energy[SF_LANES], double peak[SF_LANES],
-                          const double power[SF_LANES], double factor[SF_LANES], double softening[SF_LANES],
-                          double stored[SF_LANES], double lost[SF_LANES]) {
+                          const double power[SF_LANES], sf_unloaded *out) {
     double gap = 1 - o->hu, alpha = o->alpha, shape = o->shape, whole = o->whole, most = o->steepest;
     double bent[SF_LANES], low[SF_LANES], high[SF_LANES];
     for (int l = 0; l < SF_LANES; l++)
@@ -81,18 +79,17 @@ static inline void curved(const sf_unloading *o, const double energy[SF_LANES], 
         bool unloaded = w < top;
         double base = unloaded ? top : w;
         double integral = power[l] <= 0.5 ? below : base * above;
-        factor[l] = unloaded ? 1 - gap * bent[l] : 1;
+        out->factor[l] = unloaded ? 1 - gap * bent[l] : 1;
         double steep = alpha < 1 ? bound : 0, tangent = rest > 0 ? lower : steep;
-        softening[l] = (unloaded & (w > 0)) ? tangent : 0;
+        out->softening[l] = (unloaded & (w > 0)) ? tangent : 0;
         peak[l] = base;
-        stored[l] = w - gap * integral;
-        lost[l] = base * gap * whole;
+        out->stored[l] = w - gap * integral;
+        out->lost[l] = base * gap * whole;
     }
 }
 
 SF_KERNEL void sf_unloading_lanes(const sf_unloading *o, const double energy[SF_LANES], double peak[SF_LANES],
-                                  double factor[SF_LANES], double softening[SF_LANES],
-                                  double stored[SF_LANES], double lost[SF_LANES]) {
+                                  sf_unloaded *out) {
     double power[SF_LANES], shape = o->shape;
     SF_EACH_LANE (l)
         power[l] = energy[l] < peak[l] ? energy[l] / peak[l] : 1;
@@ -100,9 +97,9 @@ SF_KERNEL void sf_unloading_lanes(const sf_unloading *o, const double energy[SF_
         if (power[l] != 1)
             power[l] = pow(power[l], shape);
     if (o->alpha == 1)
-        straight(o, energy, peak, power, factor, softening, stored, lost);
+        straight(o, energy, peak, power, out);
     else
-        curved(o, energy, peak, power, factor, softening, stored, lost);
+        curved(o, energy, peak, power, out);
 }
 
 /* Decay of what has recovered, with each whole unloading: 5 % remain. */
@@ -138,37 +135,41 @@ double sf_memory_rest(const sf_memory *m, double pause, sf_memory_point *p) {
 /* One step of a point: `z` at the W of the step, `top` the largest Z before it, `risen` the new one if this W
  * is the largest, else -1. Returns p. At a W beyond all before, 1 - f is 0: the range begins anew, and what
  * its elastic part held is lost. */
-static inline double step(const sf_memory *m, double z, double top, double risen, double *restrict back,
-                          double *restrict loops, double *restrict passes, double *restrict recovered) {
-    double length = sf_larger(SF_MEMORY_ELASTIC * top, 1e-300), q = factor_of(m, *passes, *recovered);
-    double trial = (z - *back) / length, low = sf_larger(trial, 0), p = sf_smaller(low, q);
+static inline double step(const sf_memory *m, double z, double top, double risen,
+                          sf_memory_point *restrict point) {
+    double length = sf_larger(SF_MEMORY_ELASTIC * top, 1e-300),
+           q = factor_of(m, point->passes, point->recovered);
+    double trial = (z - point->back) / length, low = sf_larger(trial, 0), p = sf_smaller(low, q);
     bool virgin = risen >= 0;
     double rest, slid = SF_MEMORY_ELASTIC * sf_larger(-trial, 0),
-                 younger = *passes * top / sf_larger(risen, 1e-300);
-    *loops += q * length * (low - p) + (virgin ? 0.5 * length * p * p : 0);
-    *passes = virgin ? younger : *passes + slid;
-    *recovered = virgin ? 0 : *recovered * (1 + sf_lane_expm1(-RENEWAL * slid, &rest));
-    *back = virgin ? risen : z - length * p;
+                 younger = point->passes * top / sf_larger(risen, 1e-300);
+    point->loops += q * length * (low - p) + (virgin ? 0.5 * length * p * p : 0);
+    point->passes = virgin ? younger : point->passes + slid;
+    point->recovered = virgin ? 0 : point->recovered * (1 + sf_lane_expm1(-RENEWAL * slid, &rest));
+    point->back = virgin ? risen : z - length * p;
     return virgin ? 0 : p;
 }
 
 SF_KERNEL void sf_memory_lanes(const sf_memory *m, const sf_unloading *u, const double energy[SF_LANES],
-                               double peak[SF_LANES], double (*point)[SF_LANES], double factor[SF_LANES],
-                               double softening[SF_LANES], double stored[SF_LANES], double lost[SF_LANES]) {
+                               double peak[SF_LANES], double (*point)[SF_LANES], sf_unloaded *out) {
     double old[SF_LANES], share = (1 - u->hu) * u->whole;
     for (int l = 0; l < SF_LANES; l++)
         old[l] = peak[l];
-    sf_unloading_lanes(u, energy, peak, factor, softening, stored, lost);
+    sf_unloading_lanes(u, energy, peak, out);
     SF_EACH_LANE (l) {
         bool below = energy[l] < old[l];
-        double top = share * old[l], gap = 1 - factor[l], z = below ? energy[l] - stored[l] : top;
-        double p = step(m, z, top, below ? -1 : share * peak[l], &point[0][l], &point[1][l], &point[2][l],
-                        &point[3][l]);
+        double top = share * old[l], gap = 1 - out->factor[l], z = below ? energy[l] - out->stored[l] : top;
+        sf_memory_point now = {point[0][l], point[1][l], point[2][l], point[3][l]};
+        double p = step(m, z, top, below ? -1 : share * peak[l], &now);
+        point[0][l] = now.back;
+        point[1][l] = now.loops;
+        point[2][l] = now.passes;
+        point[3][l] = now.recovered;
         double length = sf_larger(SF_MEMORY_ELASTIC * top, 1e-300);
-        factor[l] = 1 - gap * (1 - p);
-        softening[l] = below ? softening[l] * (1 - p) + gap * gap / length : softening[l];
-        stored[l] += 0.5 * length * p * p;
-        lost[l] += point[1][l];
+        out->factor[l] = 1 - gap * (1 - p);
+        out->softening[l] = below ? out->softening[l] * (1 - p) + gap * gap / length : out->softening[l];
+        out->stored[l] += 0.5 * length * p * p;
+        out->lost[l] += now.loops;
     }
 }
 
@@ -180,7 +181,6 @@ double sf_memory_advance(const sf_memory *m, const sf_unloading *u, double energ
            z = share * old * (below ? sf_unloading_integral(u, ratio) : u->whole);
     double gap = below ? 1 - sf_unloading_factor(u->hu, u->shape, u->alpha, ratio) : 0;
     *peak = below ? old : energy;
-    double p = step(m, z, top, below ? -1 : share * u->whole * energy, &point->back, &point->loops,
-                    &point->passes, &point->recovered);
+    double p = step(m, z, top, below ? -1 : share * u->whole * energy, point);
     return 1 - gap * (1 - p);
 }

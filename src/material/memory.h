@@ -34,11 +34,16 @@ static inline double sf_unloading_factor(double hu, double shape, double alpha, 
 /* Integral of (1 - w^SHAPE)^ALPHA from 0 to `ratio`. */
 double sf_unloading_integral(const sf_unloading *u, double ratio);
 
-/* At W = energy (J m-3) and the largest so far, `peak`, which it raises: the factor, its derivative by W
- * (m3 J-1; for the time step), the recoverable energy and the energy lost (J m-3). */
+typedef struct sf_unloaded {
+    double factor[SF_LANES];    /* -, on the stress */
+    double softening[SF_LANES]; /* m3 J-1, its derivative by W, for the time step */
+    double stored[SF_LANES];    /* J m-3, recoverable */
+    double lost[SF_LANES];      /* J m-3 */
+} sf_unloaded;
+
+/* Evaluates a batch at W = energy (J m-3) and the largest W so far, `peak`, which it raises. */
 void sf_unloading_lanes(const sf_unloading *u, const double energy[SF_LANES], double peak[SF_LANES],
-                        double factor[SF_LANES], double softening[SF_LANES], double stored[SF_LANES],
-                        double lost[SF_LANES]);
+                        sf_unloaded *out);
 
 /* Memory of the foam laws (theory, section "Memory"): below the largest W so far a second loading follows the
  * factor f + q (1 - f), f that of unloading. Between the two lies an elastic range: with the energy gap
@@ -82,8 +87,7 @@ double sf_memory_rest(const sf_memory *memory, double pause, sf_memory_point *po
 /* Evaluates a batch as sf_unloading_lanes does, with memory; rows of `point` are its members. `softening`
  * bounds the derivative of the factor on both sides of a reversal. */
 void sf_memory_lanes(const sf_memory *memory, const sf_unloading *unloading, const double energy[SF_LANES],
-                     double peak[SF_LANES], double (*point)[SF_LANES], double factor[SF_LANES],
-                     double softening[SF_LANES], double stored[SF_LANES], double lost[SF_LANES]);
+                     double peak[SF_LANES], double (*point)[SF_LANES], sf_unloaded *out);
 
 /* The factor at one point, which it advances. */
 double sf_memory_advance(const sf_memory *memory, const sf_unloading *unloading, double energy, double *peak,

@@ -200,7 +200,8 @@ static void predict_turning(const sf_model *m, const sf_missile *missile, double
 sf_missile_response sf_missile_predict(const sf_model *m, const sf_missile *missile, double time, double dt,
                                        double dt_old) {
     double dt_v = 0.5 * (dt_old + dt);
-    sf_missile_response response = {.direction = m->missile.direction, .mobility = mobility(m)};
+    sf_missile_response response = {
+        .missile = missile, .direction = m->missile.direction, .mobility = mobility(m)};
     response.travel = sf_missile_is_driven(m) ? sf_motion_displacement(m, time + dt) - missile->displacement
                                               : dt * (missile->velocity + dt_v * sf_flight_pull(&m->missile));
     if (sf_missile_turns(m))
@@ -225,9 +226,9 @@ void sf_missile_free_motion(const sf_missile_response *response, const double x[
         out[r] += response->step[r];
 }
 
-bool sf_missile_gap_ahead(const sf_model *m, const sf_missile *missile, const sf_missile_response *response,
-                          const sf_body *body, const double x[3], const double step[3], double *gap,
-                          double normal[3]) {
+bool sf_missile_gap_ahead(const sf_model *m, const sf_missile_response *response, const sf_body *body,
+                          const double x[3], const double step[3], double *gap, double normal[3]) {
+    const sf_missile *missile = response->missile;
     double next[3], back[3], centre[3], quaternion[4];
     if (response->turns) {
         sf_rotation_advance(missile->quaternion, response->turn, quaternion);

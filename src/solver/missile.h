@@ -86,10 +86,11 @@ bool sf_missile_gap(const sf_model *model, const sf_missile *missile, const sf_b
 
 /* The motion of the missile in the next step under the contact forces that are found so far. */
 typedef struct sf_missile_response {
-    const double *direction; /* [3], of the model */
-    double mobility;         /* kg-1; 0 of a driven missile */
-    double travel;           /* m, along, in the next step without contact */
-    double load;             /* N, along, of the missile on the pad */
+    const sf_missile *missile; /* before the step; borrowed */
+    const double *direction;   /* [3], of the model */
+    double mobility;           /* kg-1; 0 of a driven missile */
+    double travel;             /* m, along, in the next step without contact */
+    double load;               /* N, along, of the missile on the pad */
     /* of a missile that turns, in place of travel and load */
     bool turns;
     double centre[3];           /* m, now */
@@ -106,9 +107,8 @@ sf_missile_response sf_missile_predict(const sf_model *model, const sf_missile *
 void sf_missile_free_motion(const sf_missile_response *response, const double x[3], double out[3]);
 /* sf_body_gap, at the pose that ends the next step without contact forces, of a point that moves
  * by `step` (m) from x in it. */
-bool sf_missile_gap_ahead(const sf_model *model, const sf_missile *missile,
-                          const sf_missile_response *response, const sf_body *body, const double x[3],
-                          const double step[3], double *gap, double normal[3]);
+bool sf_missile_gap_ahead(const sf_model *model, const sf_missile_response *response, const sf_body *body,
+                          const double x[3], const double step[3], double *gap, double normal[3]);
 /* Adds a force (N) of the missile on the pad at x to the response. */
 void sf_missile_load(sf_missile_response *response, const double x[3], const double force[3]);
 /* Acceleration (m s-2) that the forces taken so far give the missile's material point at x, against which

@@ -93,23 +93,29 @@ static char *place_beside(const char *from, const char *name, sf_error *err) {
 }
 
 /* Writes the place in the new folder of the file at `path`, which its file `from` calls `name`: there, or in
- * the folder `aside`; the first of NAME-2.END and so on that no file of another path has. `text`: of an
- * included file, whose place only one of the same text shares. */
-static sf_status find_place(const folder *f, const char *from, const char *name, const char *path,
-                            const char *aside, const char *text, char out[PATH_SIZE], sf_error *err) {
+ * the folder `aside`. */
+static sf_status find_place(const char *from, const char *name, const char *path, const char *aside,
+                            char out[PATH_SIZE], sf_error *err) {
     SF_OWNED char *beside = place_beside(from, name, err);
-    SF_PRINTED(first, PATH_SIZE, "%s%s%s", beside ? "" : aside, beside ? "" : "/",
-               beside ? beside : sf_path_name(path));
+    if (beside)
+        snprintf(out, PATH_SIZE, "%s", beside);
+    else
+        snprintf(out, PATH_SIZE, "%s/%s", aside, sf_path_name(path));
+    return err->status;
+}
+
+/* Makes NAME.END the first of NAME.END, NAME-2.END and so on that no file of another path has. `text`: of an
+ * included file, whose place only one of the same text shares. */
+static void number_place(const folder *f, const char *path, const char *text, char place[PATH_SIZE]) {
+    SF_PRINTED(first, PATH_SIZE, "%s", place);
     const char *end = strrchr(sf_path_name(first), '.');
     int stem = end && end != sf_path_name(first) ? (int)(end - first) : (int)strlen(first);
     const folder_file *other;
-    strcpy(out, first);
-    for (int number = 2; (other = find_name(f, out)); number++) {
+    for (int number = 2; (other = find_name(f, place)); number++) {
         if (strcmp(other->path, path) == 0 && (!text || (other->text && strcmp(other->text, text) == 0)))
             break;
-        snprintf(out, PATH_SIZE, "%.*s-%d%s", stem, first, number, first + stem);
+        snprintf(place, PATH_SIZE, "%.*s-%d%s", stem, first, number, first + stem);
     }
-    return err->status;
 }
 
 /* ---- geometries ---- */
@@ -192,9 +198,11 @@ static char *place_file(void *context, const char *setting, const char *name, sf
     char place[PATH_SIZE];
     if (path && strncmp(setting, "geometry.", 9) == 0)
         place_geometry(p->f, p->name, name, path, place, err);
-    else if (path && find_place(p->f, p->name, name, path, "data", NULL, place, err) == SF_OK &&
-             !find_name(p->f, place))
-        copy_file(p->f, place, path, NULL, err);
+    else if (path && find_place(p->name, name, path, "data", place, err) == SF_OK) {
+        number_place(p->f, path, NULL, place);
+        if (!find_name(p->f, place))
+            copy_file(p->f, place, path, NULL, err);
+    }
     return err->status == SF_OK ? sf_path_between(p->name, place, err) : NULL;
 }
 
@@ -216,7 +224,8 @@ static const char *write_include(const part *p, const char *at, FILE *out, sf_er
     SF_OWNED char *path = asked && own ? sf_path_whole(p->f->case_folder, asked, err) : NULL;
     if (!asked || !own)
         SF_NO_MEMORY(err, "the text of a case");
-    if (path && find_place(p->f, CASE_NAME, asked, path, "materials", own, place, err) == SF_OK) {
+    if (path && find_place(CASE_NAME, asked, path, "materials", place, err) == SF_OK) {
+        number_place(p->f, path, own, place);
         fprintf(out, "%.*s@include \"%s%.*s", (int)strspn(at, " \t"), at, place, (int)(text - end), end);
         const part inner = {p->f, path, place};
         char *kept = own;

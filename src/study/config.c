@@ -118,10 +118,10 @@ static bool is_number(const config_setting_t *s, double *out) {
 }
 
 sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,
-                           bool required, double low, double high, double *out, sf_error *err) {
-    const config_setting_t *s = find(config, group, name, required, err);
+                           double low, double high, double *out, sf_error *err) {
+    const config_setting_t *s = find(config, group, name, false, err);
     if (!s)
-        return err->status;
+        return SF_OK;
     if (!is_number(s, out))
         return sf_config_refuse(config, s, err, "%s must be a number", name);
     if (!(*out >= low && *out <= high))
@@ -152,7 +152,7 @@ sf_status sf_config_text(const sf_config *config, const config_setting_t *group,
 }
 
 sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
-                             sf_quantity kind, bool required, double low, double *out, sf_error *err) {
+                             sf_quantity kind, bool required, double *out, sf_error *err) {
     const config_setting_t *s = find(config, group, name, required, err);
     sf_error inner = SF_ERROR_INIT;
     if (!s)
@@ -163,9 +163,9 @@ sf_status sf_config_quantity(const sf_config *config, const config_setting_t *gr
                                 sf_quantity_example(kind));
     if (sf_units_parse(config->units, text, kind, out, &inner) != SF_OK)
         return sf_config_refuse(config, s, err, "%s: %s", name, inner.text);
-    if (low > 0 ? !(*out >= low) : !(*out > 0))
-        return sf_config_refuse(config, s, err, "%s is %s; it must be %s %g %s", name, text,
-                                low > 0 ? "at least" : "above", low, sf_quantity_unit(kind));
+    if (!(*out > 0))
+        return sf_config_refuse(config, s, err, "%s is %s; it must be above 0 %s", name, text,
+                                sf_quantity_unit(kind));
     return SF_OK;
 }
 
@@ -222,4 +222,3 @@ sf_status sf_config_list(const sf_config *config, const config_setting_t *group,
     *out = s;
     return SF_OK;
 }
-

@@ -28,10 +28,10 @@ sf_status sf_config_names(const sf_config *config, const config_setting_t *group
 /* One key of a group into `*out`, which must hold the default and is left alone if the key is absent, unless
  * it is `required`. Bounds are inclusive. */
 sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,
-                           bool required, double low, double high, double *out, sf_error *err);
-/* SI value, from `low` on; `low` 0: above zero. */
+                           double low, double high, double *out, sf_error *err);
+/* SI value above zero. */
 sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
-                             sf_quantity kind, bool required, double low, double *out, sf_error *err);
+                             sf_quantity kind, bool required, double *out, sf_error *err);
 /* true or false; `*out` is left alone if the key is absent. */
 sf_status sf_config_flag(const sf_config *config, const config_setting_t *group, const char *name, bool *out,
                          sf_error *err);
@@ -48,7 +48,6 @@ sf_status sf_config_file(const sf_config *config, const config_setting_t *group,
  * required. */
 sf_status sf_config_list(const sf_config *config, const config_setting_t *group, const char *name,
                          bool required, int most, const config_setting_t **out, sf_error *err);
-
 
 /* Records SF_ERR_INPUT: "file:line: sentence". */
 sf_status sf_config_refuse(const sf_config *config, const config_setting_t *setting, sf_error *err,

@@ -472,35 +472,42 @@ static int64_t list_at_section(int64_t triangles, const int32_t *triangle, const
     return count;
 }
 
+/* The surface of a rigid body; borrowed from the results. */
+typedef struct surface {
+    int64_t nodes, triangles;
+    const int32_t *triangle; /* [triangles][3] */
+    const double *position;  /* [nodes][3] m */
+} surface;
+
 /* Measures a body: its sharp edges and vertices as they are, and all edges of its triangles beyond the depth
  * that a smooth surface has in chords of the pad (model/ridges.h). */
-static sf_status measure_body(const sf_results *r, const faces *f, const sf_frame_head *head, int64_t nodes,
-                              int64_t triangles, const int32_t *triangle, const double *position,
+static sf_status measure_body(const sf_results *r, const faces *f, const sf_frame_head *head, surface body,
                               sf_rim_cut *cut, sf_error *err) {
     SF_OWNED_BY(sf_ridges_free) sf_ridges sharp = {0};
     SF_OWNED int32_t *section = NULL;
-    if (f->count == 0 || triangles == 0)
+    if (f->count == 0 || body.triangles == 0)
         return SF_OK;
     if (r->axisymmetric) {
-        section = sf_alloc(err, 3 * (unsigned long)triangles, sizeof *section, "edges of a surface");
+        section = sf_alloc(err, 3 * (unsigned long)body.triangles, sizeof *section, "edges of a surface");
         SF_TRY(err->status);
-        triangles = list_at_section(triangles, triangle, position, section);
-        triangle = section;
+        body.triangles = list_at_section(body.triangles, body.triangle, body.position, section);
+        body.triangle = section;
     }
     sf_ridge_limits limits = {.spacing = cut->spacing,
                               .depth = r->axisymmetric ? SF_SECTION_DEPTH : SF_SMOOTH_DEPTH};
     memcpy(limits.place, r->symmetry_place, sizeof limits.place);
-    SF_TRY(sf_ridges_find(nodes, position, triangles, triangle, &limits, &sharp, err));
+    SF_TRY(sf_ridges_find(body.nodes, body.position, body.triangles, body.triangle, &limits, &sharp, err));
     for (int64_t k = 0; k < sharp.count; k++)
-        measure_edge(r, f, head, &position[3 * (int64_t)sharp.ridge[k].node[0]],
-                     &position[3 * (int64_t)sharp.ridge[k].node[1]], 0, cut);
+        measure_edge(r, f, head, &body.position[3 * (int64_t)sharp.ridge[k].node[0]],
+                     &body.position[3 * (int64_t)sharp.ridge[k].node[1]], 0, cut);
     for (int64_t k = 0; k < sharp.corner_count; k++) {
-        const double *x = &position[3 * (int64_t)sharp.corner[k]];
+        const double *x = &body.position[3 * (int64_t)sharp.corner[k]];
         measure_edge(r, f, head, x, x, 0, cut);
     }
-    for (int64_t k = 0; k < 3 * triangles; k++)
-        measure_edge(r, f, head, &position[3 * (int64_t)triangle[k]],
-                     &position[3 * (int64_t)triangle[k - k % 3 + (k + 1) % 3]], SF_SMOOTH_DEPTH, cut);
+    for (int64_t k = 0; k < 3 * body.triangles; k++)
+        measure_edge(r, f, head, &body.position[3 * (int64_t)body.triangle[k]],
+                     &body.position[3 * (int64_t)body.triangle[k - k % 3 + (k + 1) % 3]], SF_SMOOTH_DEPTH,
+                     cut);
     return SF_OK;
 }
 
@@ -514,8 +521,10 @@ sf_status sf_rim_cut_measure(const sf_results *r, const sf_frame_head *head, con
         double spacing = spacing_at(r, &f, k);
         cut->spacing = spacing > 0 ? fmin(cut->spacing, spacing) : cut->spacing;
     }
-    SF_TRY(measure_body(r, &f, head, r->surface_node_count, r->surface_triangle_count, r->surface_triangle,
-                        r->surface_position, cut, err));
-    return measure_body(r, &f, NULL, r->support_node_count, r->support_triangle_count, r->support_triangle,
-                        r->support_position, cut, err);
+    const surface missile = {r->surface_node_count, r->surface_triangle_count, r->surface_triangle,
+                             r->surface_position},
+                  support = {r->support_node_count, r->support_triangle_count, r->support_triangle,
+                             r->support_position};
+    SF_TRY(measure_body(r, &f, head, missile, cut, err));
+    return measure_body(r, &f, NULL, support, cut, err);
 }

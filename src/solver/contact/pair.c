@@ -104,8 +104,8 @@ bool sf_pair_missile(const sf_scene *c, int64_t p, int64_t partner, sf_contact_p
     const sf_missile *missile = &c->state->missile;
     const double *x = &c->at->position[3 * p], *step = &c->at->step[3 * p], *old = &c->at->force[3 * p];
     double ahead, now = 0, normal[3], away[3];
-    if (!sf_missile_gap_ahead(c->model, missile, c->response, body, x, step, &ahead, q->normal) ||
-        !(ahead < 0) || (!sf_missile_gap(c->model, missile, body, x, &now, normal) && sf_dot3(old, old) == 0))
+    if (!sf_missile_gap_ahead(c->model, c->response, body, x, step, &ahead, q->normal) || !(ahead < 0) ||
+        (!sf_missile_gap(c->model, missile, body, x, &now, normal) && sf_dot3(old, old) == 0))
         return false;
     q->missile = c->response;
     sf_missile_free_motion(c->response, x, away);

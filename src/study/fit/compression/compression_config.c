@@ -21,11 +21,11 @@ static sf_status read_specimen(const sf_config *file, sf_config_item *parent,
         return sf_config_refuse(file, group, err,
                                 "specimen must be a group { side = \"50 mm\"; thickness = \"50 mm\"; }");
     SF_TRY(sf_config_names(file, group, "side|width|diameter|area|thickness", err));
-    SF_TRY(sf_config_quantity(file, group, "side", SF_LENGTH, false, 0, &s.side, err));
-    SF_TRY(sf_config_quantity(file, group, "width", SF_LENGTH, false, 0, &s.width, err));
-    SF_TRY(sf_config_quantity(file, group, "diameter", SF_LENGTH, false, 0, &s.diameter, err));
-    SF_TRY(sf_config_quantity(file, group, "area", SF_AREA, false, 0, &s.area, err));
-    SF_TRY(sf_config_quantity(file, group, "thickness", SF_LENGTH, false, 0, &s.thickness, err));
+    SF_TRY(sf_config_quantity(file, group, "side", SF_LENGTH, false, &s.side, err));
+    SF_TRY(sf_config_quantity(file, group, "width", SF_LENGTH, false, &s.width, err));
+    SF_TRY(sf_config_quantity(file, group, "diameter", SF_LENGTH, false, &s.diameter, err));
+    SF_TRY(sf_config_quantity(file, group, "area", SF_AREA, false, &s.area, err));
+    SF_TRY(sf_config_quantity(file, group, "thickness", SF_LENGTH, false, &s.thickness, err));
     if ((s.side > 0) + (s.diameter > 0) + (s.area > 0) > 1 || (s.width > 0 && !(s.side > 0)))
         return sf_config_refuse(
             file, group, err, "specimen: give side (with width, if the face is no square), diameter or area");
@@ -93,7 +93,7 @@ static sf_status read_rate(const sf_config *file, sf_config_item *entry, double 
     const char *text = setting ? config_setting_get_string(setting) : NULL;
     double speed = 0;
     if (!text || sf_units_parse(file->units, text, SF_SPEED, &speed, SF_IGNORED) != SF_OK)
-        return sf_config_quantity(file, entry, "rate", SF_RATE, true, 0, rate, err);
+        return sf_config_quantity(file, entry, "rate", SF_RATE, true, rate, err);
     if (!(speed > 0))
         return sf_config_refuse(file, setting, err, "rate: a speed of %s" SF_NOT_ABOVE_0, text);
     if (!(thickness > 0))
@@ -113,7 +113,7 @@ sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entr
     SF_TRY(read_rate(file, entry, specimen.thickness, &source->rate, err));
     SF_TRY(sf_config_flag(file, entry, "toe_correction", &source->toe, err));
     SF_TRY(sf_config_choice(file, entry, "invert", "none|strain|stress|both", &invert, err));
-    SF_TRY(sf_config_quantity(file, entry, "contact_force", SF_FORCE, false, 0, &source->contact_force, err));
+    SF_TRY(sf_config_quantity(file, entry, "contact_force", SF_FORCE, false, &source->contact_force, err));
     SF_TRY(sf_config_text(file, entry, "cycle", false, &source->cycle, err));
     if (source->contact_force > 0 && !(specimen.area > 0))
         return sf_config_refuse(file, config_setting_get_member(entry, "contact_force"), err,
@@ -133,7 +133,7 @@ static sf_status read_test(const sf_config *file, sf_config_item *entry, sf_comp
     sf_compression_source source = {.toe = c->toe};
     double temperature = 0;
     SF_TRY(sf_config_names(file, entry, "file|temperature|" SF_COMPRESSION_SOURCE_KEYS, err));
-    SF_TRY(sf_config_quantity(file, entry, "temperature", SF_TEMPERATURE, false, 0, &temperature, err));
+    SF_TRY(sf_config_quantity(file, entry, "temperature", SF_TEMPERATURE, false, &temperature, err));
     SF_TRY(sf_compression_source_read(file, entry, c->specimen, &source, err));
     SF_TRY(check_rate(file, entry, source.rate, temperature, c, err));
     SF_TRY(sf_config_file(file, entry, "file", true, &path, err));
@@ -218,13 +218,12 @@ static sf_status read_root(const sf_config *file, sf_compression_config *c, sf_e
                            "law|name|density|tests|DAMP|E_range|rate_model|densification|densification_start|"
                            "confidence|specimen|toe_correction|curve_form",
                            err));
-    SF_TRY(sf_config_quantity(file, root, "density", SF_DENSITY, true, 0, &c->density, err));
+    SF_TRY(sf_config_quantity(file, root, "density", SF_DENSITY, true, &c->density, err));
     SF_TRY(read_name(file, root, c, err));
-    SF_TRY(sf_config_number(file, root, "DAMP", false, 0, 10, &c->damp, err));
-    SF_TRY(sf_config_number(file, root, "E_range", false, 0.001, 0.2, &c->modulus_range, err));
-    SF_TRY(sf_config_number(file, root, "confidence", false, 0.5, 0.9999, &c->confidence, err));
-    SF_TRY(
-        sf_config_number(file, root, "densification_start", false, 0.05, 0.98, &c->densification_start, err));
+    SF_TRY(sf_config_number(file, root, "DAMP", 0, 10, &c->damp, err));
+    SF_TRY(sf_config_number(file, root, "E_range", 0.001, 0.2, &c->modulus_range, err));
+    SF_TRY(sf_config_number(file, root, "confidence", 0.5, 0.9999, &c->confidence, err));
+    SF_TRY(sf_config_number(file, root, "densification_start", 0.05, 0.98, &c->densification_start, err));
     SF_TRY(sf_config_choice(file, root, "rate_model", RATE_WORDS, &model, err));
     SF_TRY(sf_config_choice(file, root, "densification", RULE_WORDS, &rule, err));
     SF_TRY(sf_config_flag(file, root, "toe_correction", &c->toe, err));
