@@ -1,25 +1,29 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Assembles the sections that the studies of verify/ write into one page, and shortens their tables of checks.
+"""Makes chapters of docs/verification.md of the sections that the studies of verify/ have written.
 
-    tools/verification_page.py SECTION.md... >docs/verification.md
+    tools/verification_page.py build/verification/NAME...
 
-A study writes each check as a row "quantity | measured | required | pass". Checks "case: quantity" that several cases share
-become the range of each quantity. Of more than two checks the two nearest to their bounds stand on the page. Tables that KEPT
-does not name stay whole; of paragraphs the page has the first sentence, of those in WHOLE all, of later ones under a heading none
-unless a table or checks follow. A link after each title leads to the section, which has everything."""
+A chapter whose section is not there, or was skipped, stays. A study writes each check as a row "quantity | measured | required |
+pass". Checks "case: quantity" that several cases share become the range of each quantity. Of more than two checks the two nearest to
+their bounds stand on the page. Tables that KEPT does not name stay whole; of paragraphs the page has the first sentence, of those in
+WHOLE all, of later ones under a heading none unless a table or checks follow. The line after a title, by which the chapter is found,
+names the command that writes everything."""
 import pathlib
 import re
+import shutil
 import sys
 
+PAGE = pathlib.Path(__file__).resolve().parent.parent / "docs/verification.md"
+
 WHOLE = ("At 42 mm the difference", "With a prescribed depth", "The sphere and the quarter pad", "There is no contact stiffness",
-         "Each row has one change", "The study draws 40 foams", "200 foams of none", "Quarter models with", "The reference is CalculiX", "no rate effect, H2: 1 of")
+         "Each row has one change", "Quarter models with", "The reference is CalculiX", "no rate effect, H2: 1 of")
 SENTENCE_END = re.compile(r"(?<=[.)]) (?=[A-Z*])")
 HEAD = "| quantity | measured | required | |"
 KEPT = {  # first column of a table: the rows of which one of the first two cells matches; None if the checks below it say enough
     "mesh": None, "body force": None, "foam law": None, "cloud": None, "cells along L": None, "Δt / limit": None, "k h / π": None,
     "spacing h, mm": None, "depth, mm": None, "friction coefficient": None, "mean strain": None, "Z₂/Z₁": None,
-    "depth": r"(20|30|38|42) mm", "case": r"5\.000|→ 0",
+    "depth": r"(20|30|38|42) mm",
     "change": r"stabilisation 0\.5|smooth .*|friction .*|DAMP 0|no (rate|hyst|grav).*|tension .*|(speed|mass) .*"}
 
 
@@ -121,9 +125,9 @@ def keep(head, lines):
     return [head, lines[0], *kept, *left_out] if kept else []
 
 
-def shorten(text, path):
+def shorten(text, command):
     """The section as the page has it: headings, pictures, lists, checks, tables and the prose that belongs to them."""
-    page, first, linked = [], True, False  # first: no paragraph since the heading
+    page, first = [], True  # first: no paragraph since the heading
     blocks = [block for block in re.split(r"\n{2,}", text.strip()) if block]
     for k, block in enumerate(blocks):
         lines = block.split("\n")
@@ -142,15 +146,23 @@ def shorten(text, path):
             elif first or leads or block.endswith(":"):
                 page += [SENTENCE_END.split(block)[0], ""]
             first = False
-        if not linked and page and page[0].startswith("## ") and (len(page) > 2 or len(blocks) == 1):
-            page[2:2] = [f"[All checks and tables](images/verification/{path.name})", ""]
-            linked = True
-    return re.sub(r"\n{3,}", "\n\n", "\n".join(page)).strip() + "\n"
+    page[2:2] = [f"All checks and tables: {command}", ""]
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(page)).strip()
 
 
 def main():
-    paths = [pathlib.Path(name) for name in sys.argv[1:]]
-    print("\n".join(shorten(path.read_text(encoding="utf-8"), path) for path in paths), end="")
+    chapters = [chapter.strip() for chapter in re.split(r"(?m)^(?=## )", PAGE.read_text(encoding="utf-8"))]
+    for path in map(pathlib.Path, sys.argv[1:]):
+        section, command = path.with_suffix(".md"), f"`build/verify/study_{path.name} DIR`"
+        if not section.exists() or "\nSkipped: " in (text := section.read_text(encoding="utf-8")):
+            print(f"{path.name} stays")
+            continue
+        place = next((k for k, chapter in enumerate(chapters) if command in chapter), len(chapters))
+        chapters[place:place + 1] = [shorten(text, command)]
+        for picture in re.findall(r"\(images/verification/(.*?)\)", text):
+            shutil.copy(path.parent / picture, PAGE.parent / "images/verification")
+        print(f"{path.name} is new")
+    PAGE.write_text("\n\n".join(chapters) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -712,7 +712,7 @@ def test_what_the_pad_cannot_do_is_told_and_not_decided(case, tmp_path):
 def test_pairs_of_the_mesh_study_are_within_half_of_the_stated_error():
     """Every pair of spacings h and 2 h of the mesh study against the value of five spacings."""
     cases = {}
-    for line in (SOURCE / "docs/images/verification/mesh.md").read_text().splitlines():
+    for line in (SOURCE / "docs/verification.md").read_text().splitlines():
         cells = [cell.strip() for cell in line.split("|")[1:-1]]
         if len(cells) == 11 and cells[0].startswith("eva") and (cells[1] == "→ 0" or re.fullmatch(r"[\d.]+", cells[1])):
             cases.setdefault(cells[0], {})[cells[1]] = [float(cell.split(" ")[0]) for cell in cells[4:6]]
