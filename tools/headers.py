@@ -6,8 +6,8 @@ object files of src/ define, and for their declarations in the headers.
     tools/headers.py BUILD       from the project's root
 
 Prints each function that is declared elsewhere or in no header although other files use it, and each that is public
-although no other object file uses it; exits 1 if there is one. The rooms of EXEMPT are not looked at; functions of the
-library, softfall_*, stand in include/softfall/softfall.h."""
+although no other object file uses it; exits 1 if there is one. Functions of the library, softfall_*,
+stand in include/softfall/softfall.h."""
 import os
 import re
 import subprocess
@@ -15,8 +15,6 @@ import sys
 
 import circles
 
-# Rooms that are not looked at: study, report and gui until they are replaced; a program has a main.
-EXEMPT = ("study", "report", "gui", "programs")
 LIBRARY = "include/softfall/softfall.h"
 
 
@@ -68,7 +66,7 @@ def main():
             problem = f"is used by other files, but no header declares it; its place is {own}"
         elif where and own != LIBRARY and name not in uses:
             problem = "is declared for other files, but none uses it: make it static"
-        if problem and name != "main" and circles.room_of(unit) not in EXEMPT:
+        if problem and name != "main":
             print(f"{circles.ROOT}/{unit}.c: {name} {problem}")
             wrong += 1
     if not functions:

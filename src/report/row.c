@@ -146,14 +146,14 @@ void sf_csv_print(sf_csv *csv, const char *format, ...) {
     va_end(arguments);
 }
 
-bool sf_csv_is_formula(const char *text) {
+static bool is_formula(const char *text) {
     double number;
     return *text && strchr("=+-@\t", *text) && !sf_decimal_is(text, &number);
 }
 
 void sf_csv_quoted(sf_csv *csv, const char *text) {
     FILE *file = next_cell(csv);
-    fputs(sf_csv_is_formula(text) ? "\"'" : "\"", file);
+    fputs(is_formula(text) ? "\"'" : "\"", file);
     for (; *text; text++) {
         if (*text == '"')
             fputc('"', file);

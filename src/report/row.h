@@ -71,10 +71,9 @@ sf_status sf_csv_close(sf_csv *csv, sf_error *err);
     SF_TRY(sf_csv_open(&(csv), output, name, err))
 /* One cell, or several with commas between them, as they are; SF_CSV_PRINT_LINE also ends the line. */
 void sf_csv_print(sf_csv *csv, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* A text in quotes; NULL: an empty cell. What a spreadsheet would compute, as
- * "=1+2", gets an apostrophe in front. Line ends become blanks. */
+/* A text in quotes. What a spreadsheet would compute, as "=1+2", gets an apostrophe in front. Line ends
+ * become blanks. */
 void sf_csv_quoted(sf_csv *csv, const char *text);
-bool sf_csv_is_formula(const char *text);
 /* Several cells: SF_CSV_NUMBERS(&csv, low, high); the same and the end of the line. */
 void sf_csv_numbers(sf_csv *csv, int count, const double *value);
 #define SF_CSV_NUMBERS(csv, ...)                                                                             \

@@ -123,8 +123,8 @@ static void put_response_error(FILE *file, const sf_response_error *error) {
     fputs("};\n", file);
 }
 
-sf_status sf_material_write(const char *folder, const char *name, const sf_material *material,
-                            const sf_material_text *text, sf_error *err) {
+static sf_status write_material(const char *folder, const char *name, const sf_material *material,
+                                const sf_material_text *text, sf_error *err) {
     sf_replacement out;
     const sf_law_curves *curves = sf_material_curves(material);
     for (int64_t k = 0; curves && k < curves->curve_count; k++)
@@ -147,7 +147,7 @@ sf_status sf_material_write(const char *folder, const char *name, const sf_mater
 sf_status sf_material_write_checked(const char *folder, const char *name, const sf_material *material,
                                     const sf_material_text *text, sf_error *err) {
     sf_error inner = SF_ERROR_INIT;
-    SF_TRY(sf_material_write(folder, name, material, text, err));
+    SF_TRY(write_material(folder, name, material, text, err));
     SF_PRINTED(path, PATH_SIZE, "%s/%s.cfg", folder, name);
     const sf_law_curves *curves = sf_material_curves(material);
     for (int64_t k = 1; k < (text->temperatures ? curves->curve_count : 2) && inner.status == SF_OK; k++)

@@ -20,10 +20,7 @@ typedef struct sf_material_text {
 } sf_material_text;
 
 /* Writes <folder>/<name>.cfg, and <name>.csv or, for several curves, <name>-1.csv and so on; files that are
- * there are replaced. Numbers are written so that reading them gives the card back to 12 digits. */
-sf_status sf_material_write(const char *folder, const char *name, const sf_material *material,
-                            const sf_material_text *text, sf_error *err);
-
-/* The same, but SF_ERR_MODEL with the reason, and no <name>.cfg, if softfall-pre would refuse it. */
+ * there are replaced. Numbers are written so that reading them gives the card back to 12 digits. SF_ERR_MODEL
+ * with the reason, and no <name>.cfg, if softfall-pre would refuse it. */
 sf_status sf_material_write_checked(const char *folder, const char *name, const sf_material *material,
                                     const sf_material_text *text, sf_error *err);

@@ -105,9 +105,10 @@ static sf_status read_rate(const sf_config *file, sf_config_item *entry, double 
     return SF_OK;
 }
 
-sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entry,
-                                     sf_compression_specimen specimen, sf_compression_source *source,
-                                     sf_error *err) {
+/* Reads the keys of a test beside its file and temperature; `specimen` and `source->toe` are those of tests
+ * without their own. */
+static sf_status read_source(const sf_config *file, sf_config_item *entry, sf_compression_specimen specimen,
+                             sf_compression_source *source, sf_error *err) {
     int invert = SF_INVERT_NONE;
     SF_TRY(read_specimen(file, entry, &specimen, err));
     SF_TRY(read_rate(file, entry, specimen.thickness, &source->rate, err));
@@ -132,9 +133,10 @@ static sf_status read_test(const sf_config *file, sf_config_item *entry, sf_comp
     SF_OWNED char *path = NULL;
     sf_compression_source source = {.toe = c->toe};
     double temperature = 0;
-    SF_TRY(sf_config_names(file, entry, "file|temperature|" SF_COMPRESSION_SOURCE_KEYS, err));
+    SF_TRY(sf_config_names(file, entry,
+                           "file|temperature|rate|specimen|cycle|contact_force|toe_correction|invert", err));
     SF_TRY(sf_config_quantity(file, entry, "temperature", SF_TEMPERATURE, false, &temperature, err));
-    SF_TRY(sf_compression_source_read(file, entry, c->specimen, &source, err));
+    SF_TRY(read_source(file, entry, c->specimen, &source, err));
     SF_TRY(check_rate(file, entry, source.rate, temperature, c, err));
     SF_TRY(sf_config_file(file, entry, "file", true, &path, err));
     source.path = path;

@@ -51,10 +51,3 @@ extern const char *const sf_rate_model_names[];
  * sf_compression_test_read refuses. On failure `*config` is zeroed. */
 sf_status sf_compression_config_read(const char *path, sf_compression_config *config, sf_error *err);
 void sf_compression_config_free(sf_compression_config *config);
-
-/* The keys of one test beside its file, for other files with such tests; `path` is the caller's. */
-#define SF_COMPRESSION_SOURCE_KEYS "rate|specimen|cycle|contact_force|toe_correction|invert"
-/* Reads them; `specimen` and `source->toe` are those of tests without their own. */
-sf_status sf_compression_source_read(const sf_config *file, sf_config_item *entry,
-                                     sf_compression_specimen specimen, sf_compression_source *source,
-                                     sf_error *err);

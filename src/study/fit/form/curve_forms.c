@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Defines the entry sf_form_NAME of each form of SF_CURVE_FORM_LIST. */
+#include "study/fit/form/curve_forms.h"
+
 #include "material/curve.h"
-#include "study/fit/form/form.h"
 
 static const double ATMOSPHERE = 101325; /* Pa */
 static const double DENSE = 1.4;         /* e_D = 1 - DENSE Phi (Gibson and Ashby) */
@@ -37,7 +37,24 @@ static double pressure_of(const double *value) {
 
 /* ---- gas: cells full of gas, the solid fraction neglected ---- */
 
-double sf_gas_curve_stress(const sf_gas_curve *curve, double strain) {
+/* A physically shaped compression curve of a closed-cell foam:
+ *
+ *     sigma(e) = s0 (1 - exp(-(E - p0/(1 - Phi)) e/s0)) + p0 e/(1 - e - Phi) + B (e/(e_D - e))^m,
+ *
+ * yield of the cell walls at s0; isothermal compression of the gas in the cells, which is beside the solid
+ * fraction Phi (Gibson and Ashby); densification with its pole at e_D = 1 - 1.4 Phi. The initial slope is E.
+ * With Phi = 0 both poles are at 1. */
+typedef struct gas_curve {
+    double modulus;  /* Pa, E */
+    double yield;    /* Pa, s0 > 0 */
+    double pressure; /* Pa, p0 */
+    double factor;   /* Pa, B >= 0 */
+    double exponent; /* -, m > 1 */
+    double solid;    /* -, Phi >= 0 */
+} gas_curve;
+
+/* Nominal stress (Pa) at a compressive strain, 0 <= strain < e_D. */
+static double gas_curve_stress(const gas_curve *curve, double strain) {
     double gas = curve->pressure / (1 - curve->solid),
            slope = fmax(curve->modulus - gas, LEAST_PART * curve->modulus);
     return -curve->yield * expm1(-slope * strain / curve->yield) +
@@ -45,18 +62,18 @@ double sf_gas_curve_stress(const sf_gas_curve *curve, double strain) {
            curve->factor * pow(strain / (sf_form_dense_strain(curve->solid) - strain), curve->exponent);
 }
 
-static sf_gas_curve gas_curve(const double *value, double solid) {
-    return (sf_gas_curve){.modulus = value[SF_PARAMETER_E],
-                          .yield = value[SF_PARAMETER_S0],
-                          .pressure = value[SF_PARAMETER_P0],
-                          .factor = value[SF_PARAMETER_B],
-                          .exponent = value[SF_PARAMETER_M],
-                          .solid = solid};
+static gas_curve gas_curve_of(const double *value, double solid) {
+    return (gas_curve){.modulus = value[SF_PARAMETER_E],
+                       .yield = value[SF_PARAMETER_S0],
+                       .pressure = value[SF_PARAMETER_P0],
+                       .factor = value[SF_PARAMETER_B],
+                       .exponent = value[SF_PARAMETER_M],
+                       .solid = solid};
 }
 
 /* SF_ERR_NUMERIC: no rising curve. Where the gas alone is stiffer than E the curve begins with its stiffness.
  */
-static sf_status check_gas_curve(sf_gas_curve c, sf_error *err) {
+static sf_status check_gas_curve(gas_curve c, sf_error *err) {
     if (!(c.solid >= 0 && c.solid < MOST_SOLID))
         return SF_FAIL(err, SF_ERR_NUMERIC,
                        "the solid fraction" SF_OUTSIDE("%g", "0", "%g") ": that is no foam", c.solid,
@@ -66,9 +83,9 @@ static sf_status check_gas_curve(sf_gas_curve c, sf_error *err) {
     return SF_OK;
 }
 
-static void fill_gas_stresses(sf_gas_curve curve, int count, const double *strain, double *out) {
+static void fill_gas_stresses(gas_curve curve, int count, const double *strain, double *out) {
     for (int k = 0; k < count; k++)
-        out[k] = sf_gas_curve_stress(&curve, strain[k]);
+        out[k] = gas_curve_stress(&curve, strain[k]);
 }
 
 /* Medians of s0, p0, B and m: B and m such that a foam with or without solid fraction densifies alike. */
@@ -90,11 +107,11 @@ static void gas_start(double *value) {
 }
 
 static sf_status gas_check(const double *value, sf_error *err) {
-    return check_gas_curve(gas_curve(value, 0), err);
+    return check_gas_curve(gas_curve_of(value, 0), err);
 }
 
 static void gas_stress(const double *value, int count, const double *strain, double *out) {
-    fill_gas_stresses(gas_curve(value, 0), count, strain, out);
+    fill_gas_stresses(gas_curve_of(value, 0), count, strain, out);
 }
 
 FORM(gas, "s0 (1 - exp(-(E - p0) e/s0)) + p0 x + B x^m with x = e/(1 - e)", .check = gas_check,
@@ -118,11 +135,11 @@ static void gas_solid_start(double *value) {
 }
 
 static sf_status gas_solid_check(const double *value, sf_error *err) {
-    return check_gas_curve(gas_curve(value, value[SF_PARAMETER_SOLID_FRACTION]), err);
+    return check_gas_curve(gas_curve_of(value, value[SF_PARAMETER_SOLID_FRACTION]), err);
 }
 
 static void gas_solid_stress(const double *value, int count, const double *strain, double *out) {
-    fill_gas_stresses(gas_curve(value, value[SF_PARAMETER_SOLID_FRACTION]), count, strain, out);
+    fill_gas_stresses(gas_curve_of(value, value[SF_PARAMETER_SOLID_FRACTION]), count, strain, out);
 }
 
 FORM(gas_solid,
@@ -265,8 +282,8 @@ static double deviation(const double c[COEFFICIENTS], double strain) {
 }
 
 /* The gas curve below the spline, whose coefficients go into `c`. */
-static sf_gas_curve curve_below(const double *value, double c[COEFFICIENTS]) {
-    sf_gas_curve curve = gas_curve(value, fmax(0, value[SF_PARAMETER_SOLID_FRACTION]));
+static gas_curve curve_below(const double *value, double c[COEFFICIENTS]) {
+    gas_curve curve = gas_curve_of(value, fmax(0, value[SF_PARAMETER_SOLID_FRACTION]));
     fill_coefficients(value, c);
     curve.modulus *= exp(-deviation(c, 0));
     return curve;
@@ -297,3 +314,45 @@ static void table_start(double *value) {
 }
 
 FORM(table, "the start material's curve times stress_scale", .stress = NULL);
+
+/* ---- the table of the forms ---- */
+
+static const sf_curve_form *const forms[SF_CURVE_FORMS] = {
+#define SF_CURVE_FORM(form) &sf_form_##form,
+    SF_CURVE_FORM_LIST(SF_CURVE_FORM)
+#undef SF_CURVE_FORM
+};
+
+const sf_curve_form *sf_curve_form_get(int index) {
+    return forms[index];
+}
+
+const sf_curve_form *sf_curve_form_find(const char *name) {
+    for (int k = 0; k < SF_CURVE_FORMS; k++)
+        if (strcmp(forms[k]->name, name) == 0)
+            return forms[k];
+    return NULL;
+}
+
+const char *sf_curve_form_words(void) {
+#define SF_CURVE_FORM(form) "|" #form
+    static const char words[] = SF_CURVE_FORM_LIST(SF_CURVE_FORM);
+#undef SF_CURVE_FORM
+    return words + 1;
+}
+
+const sf_form_entry *sf_curve_form_entry(const sf_curve_form *form, sf_foam_parameter parameter) {
+    for (int k = 0; k < form->entry_count; k++)
+        if (form->entry[k].parameter == parameter)
+            return &form->entry[k];
+    return NULL;
+}
+
+bool sf_curve_form_uses(const sf_curve_form *form, sf_foam_parameter parameter) {
+    bool of_a_form = false;
+    if (parameter == SF_PARAMETER_LOCKED)
+        return true;
+    for (int k = 0; k < SF_CURVE_FORMS; k++)
+        of_a_form = of_a_form || sf_curve_form_entry(forms[k], parameter);
+    return !of_a_form || sf_curve_form_entry(form, parameter);
+}

@@ -2,65 +2,6 @@
 #include "study/fit/form/form.h"
 
 #include "material/curve.h"
-#include "model/drop_kind.h"
-
-static const sf_parameter_info info[SF_PARAMETER_COUNT] = {
-#define SF_FIT_PARAMETER_ROW(id, name, quantity, unit, per_unit, low, high, prior_sd, description)           \
-    [SF_PARAMETER_##id] = {name, quantity, unit, per_unit, low, high, prior_sd, description},
-    SF_FIT_PARAMETERS(SF_FIT_PARAMETER_ROW, SF_QUANTITY_COUNT)};
-
-const sf_parameter_info *sf_parameter_get(sf_foam_parameter parameter) {
-    return &info[parameter];
-}
-
-const char *const sf_form_rate_names[] = {"none", "factor", "maxwell", "both"};
-
-sf_form_rate sf_form_rate_of(sf_foam_parameter p) {
-    if (p == SF_PARAMETER_RATE_FACTOR || p == SF_PARAMETER_RATE_REFERENCE ||
-        p == SF_PARAMETER_RATE_FILTER_TIME)
-        return SF_FORM_RATE_FACTOR;
-    return p == SF_PARAMETER_ED || p == SF_PARAMETER_BETA1 ? SF_FORM_RATE_MAXWELL : SF_FORM_RATE_NONE;
-}
-
-static const sf_curve_form *const forms[SF_CURVE_FORMS] = {
-#define SF_CURVE_FORM(form) &sf_form_##form,
-    SF_CURVE_FORM_LIST(SF_CURVE_FORM)
-#undef SF_CURVE_FORM
-};
-
-const sf_curve_form *sf_curve_form_get(int index) {
-    return forms[index];
-}
-
-const sf_curve_form *sf_curve_form_find(const char *name) {
-    for (int k = 0; k < SF_CURVE_FORMS; k++)
-        if (strcmp(forms[k]->name, name) == 0)
-            return forms[k];
-    return NULL;
-}
-
-const char *sf_curve_form_words(void) {
-#define SF_CURVE_FORM(form) "|" #form
-    static const char words[] = SF_CURVE_FORM_LIST(SF_CURVE_FORM);
-#undef SF_CURVE_FORM
-    return words + 1;
-}
-
-const sf_form_entry *sf_curve_form_entry(const sf_curve_form *form, sf_foam_parameter parameter) {
-    for (int k = 0; k < form->entry_count; k++)
-        if (form->entry[k].parameter == parameter)
-            return &form->entry[k];
-    return NULL;
-}
-
-bool sf_curve_form_uses(const sf_curve_form *form, sf_foam_parameter parameter) {
-    bool of_a_form = false;
-    if (parameter == SF_PARAMETER_LOCKED)
-        return true;
-    for (int k = 0; k < SF_CURVE_FORMS; k++)
-        of_a_form = of_a_form || sf_curve_form_entry(forms[k], parameter);
-    return !of_a_form || sf_curve_form_entry(form, parameter);
-}
 
 double sf_curve_form_pole(const sf_curve_form *form, const double *value) {
     double own = form->pole(value), locked = value[SF_PARAMETER_LOCKED];
