@@ -31,7 +31,9 @@ bool sf_case_has_name(int count, const char (*list)[SF_CASE_NAME_SIZE], const ch
 }
 
 const sf_geo_source *sf_case_geometry(const sf_case *c, int k) {
-    return k == 0 ? &c->pad : k == 1 ? &c->missile : &c->support[k - 2].source;
+    if (k >= 2)
+        return &c->support[k - 2].source;
+    return k == 0 ? &c->pad : &c->missile;
 }
 
 uint64_t sf_case_hash(const sf_case *c) {

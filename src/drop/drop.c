@@ -211,6 +211,13 @@ static void add_note(void *results, sf_severity severity, const char *sentence) 
     sf_results_note_run(results, sentence);
 }
 
+/* The failure, or one word for the way a drop ended. */
+static const char *ending_of(const sf_drop *d) {
+    if (d->failure.status != SF_OK)
+        return d->failure.text;
+    return d->ending == SF_DROP_REBOUND ? "rebound" : "finished";
+}
+
 /* Tells how the drop ended; of one that goes on the results have no summary, as those of a run that was
  * killed. */
 static void take_summary(const sf_drop *d, sf_results *r) {
@@ -231,10 +238,7 @@ static void take_summary(const sf_drop *d, sf_results *r) {
     r->interactions = d->model.domain_nnz;
     if (!r->has_summary)
         return;
-    snprintf(r->status, sizeof r->status, "%.511s",
-             d->failure.status != SF_OK     ? d->failure.text
-             : d->ending == SF_DROP_REBOUND ? "rebound"
-                                            : "finished");
+    snprintf(r->status, sizeof r->status, "%.511s", ending_of(d));
     sf_run_tell_all(&d->model, &d->state, &extremes, &sink);
     if (d->failure.status != SF_OK)
         sf_results_note(r, "the run stopped with: %s", r->status);

@@ -468,9 +468,8 @@ sf_status sf_h5_check_replaced(const char *path, const char *format, sf_error *e
         return SF_OK;
     sf_h5_get_attribute(&file, "/", "format", found, sizeof found, SF_IGNORED);
     H5Fclose(file.id);
-    return strcmp(found, format) == 0
-               ? SF_OK
-               : SF_REFUSE(err, "%s is not replaced, as it is %s%s and no %s file: give another output", path,
-                           *found ? "a file of the format " : "an HDF5 file of another program", found,
-                           format);
+    if (strcmp(found, format) == 0)
+        return SF_OK;
+    return SF_REFUSE(err, "%s is not replaced, as it is %s%s and no %s file: give another output", path,
+                     *found ? "a file of the format " : "an HDF5 file of another program", found, format);
 }

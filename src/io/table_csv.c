@@ -77,7 +77,9 @@ static bool is_other_title(const char *comment) {
 static char *next_content(csv *file) {
     while (*file->next) {
         char *line = file->next, *end = line + strcspn(line, "\r\n");
-        file->next = *end == '\r' && end[1] == '\n' ? end + 2 : *end ? end + 1 : end;
+        file->next = end + (*end != '\0');
+        if (*end == '\r' && *file->next == '\n')
+            file->next++;
         *end = '\0';
         file->line++;
         if (strncmp(line, READING, sizeof READING - 1) == 0)
@@ -136,9 +138,11 @@ static double unit_value(const csv *file, const char *text, int kind) {
 /* The SI value of the unit at the end of a heading such as "Name (unit)", which is cut off `name`; else 0. */
 static double bracketed_unit(const csv *file, char *name, int kind, char unit[UNIT]) {
     size_t length = strlen(name);
-    char *open = length > 0 && strchr(")]", name[length - 1])
-                     ? strrchr(name, name[length - 1] == ')' ? '(' : '[')
-                     : NULL;
+    char *open = NULL;
+    if (length > 0 && name[length - 1] == ')')
+        open = strrchr(name, '(');
+    else if (length > 0 && name[length - 1] == ']')
+        open = strrchr(name, '[');
     if (!open || open == name)
         return 0;
     name[length - 1] = '\0';
@@ -156,6 +160,11 @@ static bool is_named(const char *name, const char *names) {
     return sf_word_find(names, lower) >= 0;
 }
 
+/* True if a heading is the user's choice or, without one, a name of the column. */
+static bool is_heading(const char *name, const sf_table_column *column, const char *chosen) {
+    return chosen ? strcmp(name, chosen) == 0 : is_named(name, column->names);
+}
+
 /* The SI value of the unit of a cell that holds the column, by its names or the user's choice; else 0. */
 static double cell_scale(const csv *file, const char *cell, const sf_table_column *column, const char *chosen,
                          char unit[UNIT]) {
@@ -168,8 +177,7 @@ static double cell_scale(const csv *file, const char *cell, const sf_table_colum
     if (strchr(")]", name[length - 1])) {
         double value = bracketed_unit(file, name, column->kind, unit);
         char *plain = trim(name);
-        bool fits = chosen ? whole || strcmp(plain, chosen) == 0 : is_named(plain, column->names);
-        return fits ? value : 0;
+        return whole || is_heading(plain, column, chosen) ? value : 0;
     }
     for (char *at = strchr(name, '_'); at; at = strchr(at + 1, '_')) { /* name_unit, its next _ read as / */
         snprintf(unit, UNIT, "%.31s", at + 1);
@@ -177,15 +185,14 @@ static double cell_scale(const csv *file, const char *cell, const sf_table_colum
         if (slash)
             *slash = '/';
         *at = '\0';
-        double value = (chosen ? whole || strcmp(name, chosen) == 0 : is_named(name, column->names))
-                           ? unit_value(file, unit, column->kind)
-                           : 0;
+        bool fits = whole || is_heading(name, column, chosen);
+        double value = fits ? unit_value(file, unit, column->kind) : 0;
         *at = '_';
         if (value > 0)
             return value;
     }
     snprintf(unit, UNIT, "1");
-    return column->kind == SF_TABLE_RATIO && (chosen ? whole : is_named(name, column->names));
+    return column->kind == SF_TABLE_RATIO && is_heading(name, column, chosen);
 }
 
 /* Finds a column in the heading; `*count`: cells that could be it. */

@@ -344,6 +344,14 @@ bool sf_model_skin_is_quadrangle(const sf_model *m, int64_t k) {
     return m->skin_half[k - 1] == 1 && m->skin_half[k] == 2 && one[0] == two[0] && one[2] == two[1];
 }
 
+double sf_model_friction(const sf_model *m, int one, int other) {
+    int low = one < other ? one : other, high = one < other ? other : one;
+    for (int64_t k = 0; k < m->pair_count; k++)
+        if (m->pair_layer[2 * k] == low && m->pair_layer[2 * k + 1] == high)
+            return m->pair_friction[k];
+    return m->skin_friction;
+}
+
 int64_t sf_model_skin_triangles(const sf_model *m) {
     int64_t count = m->skin_count;
     for (int64_t k = 1; k < m->skin_count; k++)

@@ -372,6 +372,9 @@ bool sf_symmetry_plane(const sf_model *model, int axis, double *place);
  * is a triangle. k > 0. */
 bool sf_model_skin_is_quadrangle(const sf_model *model, int64_t k);
 
+/* Coulomb coefficient between the faces of two materials of the pad, by their numbers. */
+double sf_model_friction(const sf_model *model, int one, int other);
+
 /* The skin's triangles that are no halves; those of them whose centroids may touch the pad, none without
  * skin_centroids or where the skin touches the supports only. */
 int64_t sf_model_skin_triangles(const sf_model *model);

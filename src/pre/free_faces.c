@@ -205,12 +205,7 @@ static bool is_unmatched(const sf_model *m, const faces *f, const double x[3], c
 
 /* The Coulomb coefficient between the faces i and k. */
 static double friction_between(const sf_model *m, const faces *f, int64_t i, int64_t k) {
-    int one = m->node_material[f->node[3 * i]], other = m->node_material[f->node[3 * k]];
-    for (int64_t pair = 0; pair < m->pair_count; pair++)
-        if (m->pair_layer[2 * pair] == (one < other ? one : other) &&
-            m->pair_layer[2 * pair + 1] == (one < other ? other : one))
-            return m->pair_friction[pair];
-    return m->skin_friction;
+    return sf_model_friction(m, m->node_material[f->node[3 * i]], m->node_material[f->node[3 * k]]);
 }
 
 /* Refuses quadrangles that do not match, touch and slide without friction: beyond a strain of 0.45 the foam

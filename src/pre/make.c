@@ -130,8 +130,8 @@ static void cut_section(const sf_case *c, const sf_mesh *mesh, const sf_surface 
     if (c->motion_count > 0 || sf_section_check_case(c, &none) != SF_OK ||
         (!c->axisymmetric && sf_section_cut(c, mesh, equal, &none) != SF_OK))
         return;
-    if ((c->axisymmetric ? mesh : equal)->node_count > SF_SECTIONS_MOST ||
-        copy_sections(c->axisymmetric ? mesh : equal, missile, s, &none) != SF_OK)
+    const sf_mesh *section = c->axisymmetric ? mesh : equal;
+    if (section->node_count > SF_SECTIONS_MOST || copy_sections(section, missile, s, &none) != SF_OK)
         sf_sections_free(s);
 }
 

@@ -96,8 +96,11 @@ static void put_base64(FILE *out, const unsigned char *data, size_t size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (size_t k = 0; k < size; k += 3) {
         size_t left = size - k;
-        unsigned three = (unsigned)data[k] << 16 | (left > 1 ? (unsigned)data[k + 1] << 8 : 0) |
-                         (left > 2 ? (unsigned)data[k + 2] : 0);
+        unsigned three = (unsigned)data[k] << 16;
+        if (left > 1)
+            three |= (unsigned)data[k + 1] << 8;
+        if (left > 2)
+            three |= data[k + 2];
         putc_unlocked(digits[three >> 18], out);
         putc_unlocked(digits[three >> 12 & 63], out);
         putc_unlocked(left > 1 ? digits[three >> 6 & 63] : '=', out);
@@ -224,10 +227,17 @@ double sf_row_number(const sf_row *row, const void *record) {
     sf_value value = sf_row_value(row, record);
     if (!is_defined(value))
         return NAN;
-    return value.kind == SF_VALUE_REAL      ? value.real * factor_of(row)
-           : value.kind == SF_VALUE_INTEGER ? (double)value.integer
-           : value.kind == SF_VALUE_FLAG    ? value.flag
-                                            : NAN;
+    switch (value.kind) {
+    case SF_VALUE_REAL:
+        return value.real * factor_of(row);
+    case SF_VALUE_INTEGER:
+        return (double)value.integer;
+    case SF_VALUE_FLAG:
+        return value.flag;
+    case SF_VALUE_TEXT:
+        break;
+    }
+    return NAN;
 }
 
 #pragma GCC diagnostic push
@@ -235,14 +245,17 @@ double sf_row_number(const sf_row *row, const void *record) {
 const char *sf_row_shown(const sf_row *row, const void *record, const char *dash, char *text, size_t size) {
     sf_value value = sf_row_value(row, record);
     double shown = value.real * (row->shown != 0 ? row->shown : factor_of(row));
+    const char *usual = fabs(shown) >= 1e4 ? "%.6g" : "%.4g";
     if (!is_defined(value))
         snprintf(text, size, "%s", dash);
     else if (value.kind == SF_VALUE_REAL)
-        snprintf(text, size, row->format ? row->format : fabs(shown) >= 1e4 ? "%.6g" : "%.4g", shown);
+        snprintf(text, size, row->format ? row->format : usual, shown);
     else if (value.kind == SF_VALUE_INTEGER)
         snprintf(text, size, "%lld", (long long)value.integer);
+    else if (value.kind == SF_VALUE_TEXT)
+        snprintf(text, size, "%s", value.text);
     else
-        snprintf(text, size, "%s", value.kind == SF_VALUE_TEXT ? value.text : value.flag ? "yes" : "no");
+        snprintf(text, size, "%s", value.flag ? "yes" : "no");
     return text;
 }
 #pragma GCC diagnostic pop

@@ -195,7 +195,8 @@ static double tridiagonal_top(int size, const double *alpha, const double *beta,
     double low = alpha[0], high = 0, pivot[BASIS];
     for (int j = 0; j < size; j++) {
         low = fmax(low, alpha[j]);
-        high = fmax(high, alpha[j] + (j > 0 ? beta[j - 1] : 0) + (j + 1 < size ? beta[j] : 0));
+        double before = j > 0 ? beta[j - 1] : 0, after = j + 1 < size ? beta[j] : 0;
+        high = fmax(high, alpha[j] + before + after);
     }
     high *= 1 + 1e-14;
     for (int pass = 0; pass < 60; pass++) {

@@ -109,12 +109,19 @@ static const config_setting_t *find(const sf_config *config, const config_settin
 }
 
 static bool is_number(const config_setting_t *s, double *out) {
-    int type = config_setting_type(s);
-    *out = type == CONFIG_TYPE_FLOAT   ? config_setting_get_float(s)
-           : type == CONFIG_TYPE_INT   ? config_setting_get_int(s)
-           : type == CONFIG_TYPE_INT64 ? (double)config_setting_get_int64(s)
-                                       : NAN;
-    return type == CONFIG_TYPE_FLOAT || type == CONFIG_TYPE_INT || type == CONFIG_TYPE_INT64;
+    switch (config_setting_type(s)) {
+    case CONFIG_TYPE_FLOAT:
+        *out = config_setting_get_float(s);
+        return true;
+    case CONFIG_TYPE_INT:
+        *out = config_setting_get_int(s);
+        return true;
+    case CONFIG_TYPE_INT64:
+        *out = (double)config_setting_get_int64(s);
+        return true;
+    default:
+        return false;
+    }
 }
 
 sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,

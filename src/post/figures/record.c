@@ -325,8 +325,9 @@ static void describe(const record *r, sf_check *row) {
             if (change * mistakes[k].factor > LEAST * speed && change * mistakes[k].factor < MOST * speed)
                 sf_text_add(row->text, sizeof row->text, ": %s", mistakes[k].mistake);
     } else if (row->key == rules[SF_RECORD_duration].key) {
-        snprintf(row->text, sizeof row->text, "the pulse lasts %.3g ms; 0.2 to 1000 ms can be%s%s",
-                 1e3 * length, bad ? ": " : "", bad ? mistakes[length < 1e-3 ? 2 : 3].mistake : "");
+        snprintf(row->text, sizeof row->text, "the pulse lasts %.3g ms; 0.2 to 1000 ms can be", 1e3 * length);
+        if (bad)
+            sf_text_add(row->text, sizeof row->text, ": %s", mistakes[length < 1e-3 ? 2 : 3].mistake);
     }
 }
 

@@ -97,7 +97,9 @@ static int64_t frame_at(const page *p, int64_t k, bool *is_peak) {
     if (peak > 0 && nearest == 0 && gaps > 0)
         nearest = 1;
     *is_peak = peak >= 0 && k == nearest;
-    return *is_peak ? peak : gaps > 0 ? k * (all - 1) / gaps : 0;
+    if (*is_peak)
+        return peak;
+    return gaps > 0 ? k * (all - 1) / gaps : 0;
 }
 
 /* ---- arrays ---- */

@@ -401,9 +401,9 @@ static void domain_row(const builder *b, const int64_t *corner_ptr, const int64_
         *volume += b->section ? edge->part[!low] : sign * edge->flux;
         for (int p = 0; p < edge->count; p++) {
             const double *sum = &edge->sum[b->columns * p];
-            row_add(row, edge->node[p],
-                    (const double[3]){sign * sum[0], b->section ? sum[low ? 3 : 4] : sign * sum[1],
-                                      sign * sum[2]});
+            row_add(
+                row, edge->node[p],
+                (const double[3]){sign * sum[0], b->section ? sum[3 + !low] : sign * sum[1], sign * sum[2]});
         }
     }
     double aside = 0, *flux = b->section ? &aside : volume;

@@ -458,7 +458,9 @@ static sf_status judge(conversation *c, sf_meshed *out, sf_error *err) {
         return judge_ending(c, err);
     SF_TRY(sf_geo_data_read(c->stream, c->size, c->source->path, &out->data, err));
     const char *said = out->data.error;
-    return *said ? fail(c, err, strncmp(said, "it holds ", 9) == 0 ? "%s" : "gmsh, %s", said) : SF_OK;
+    if (!*said)
+        return SF_OK;
+    return fail(c, err, strncmp(said, "it holds ", 9) == 0 ? "%s" : "gmsh, %s", said);
 }
 
 static void send_request(const conversation *c, sf_error *err) {

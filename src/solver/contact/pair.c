@@ -74,14 +74,11 @@ double sf_pair_friction(const sf_scene *c, const sf_contact_pair *q) {
         return m->missile.friction;
     if (q->body == SF_BODY_ANVIL && m->rest_count > 0) /* else there is one for free faces alone */
         return m->anvil.friction;
-    for (int64_t k = 0; k < m->pair_count && q->facet >= 0; k++) {
-        const uint8_t *layer = &m->pair_layer[2 * k];
-        int own = m->node_material[skin->node[sf_skin_member(skin, q->node, 0)]],
-            other = m->node_material[skin->node[skin->facet[3 * q->facet]]];
-        if ((own < other ? own : other) == layer[0] && (own < other ? other : own) == layer[1])
-            return m->pair_friction[k];
-    }
-    return m->skin_friction;
+    if (m->pair_count == 0 || q->facet < 0)
+        return m->skin_friction;
+    int own = m->node_material[skin->node[sf_skin_member(skin, q->node, 0)]],
+        other = m->node_material[skin->node[skin->facet[3 * q->facet]]];
+    return sf_model_friction(m, own, other);
 }
 
 void sf_pair_list_parts(const sf_skin *skin, sf_contact_pair *q) {

@@ -20,7 +20,7 @@ static int falls_away(const sf_contact_points *at, const int32_t edge[4], const 
         double arm[3];
         sf_skin_third(at->position, edge, k, arm);
         double slope = sf_dot3(arm, n), least = SLOPE * sqrt(sf_dot3(arm, arm));
-        side += slope < -least ? 1 : slope > least ? -1 : 0;
+        side += (slope < -least) - (slope > least);
     }
     return side / 2;
 }
@@ -33,10 +33,11 @@ static void straighten(const sf_skin *skin, const int32_t in[4], int32_t edge[4]
         if (!there || !(first || skin->held[edge[1]] >> r & 1))
             continue;
         int32_t begin = edge[!first];
+        int sense = first ? 1 : -1;
         edge[1] = edge[first];
         edge[0] = begin;
         for (int k = 0; k < 3; k++)
-            along[k] *= k != r ? 0 : first ? 1 : -1;
+            along[k] *= k == r ? sense : 0;
     }
 }
 

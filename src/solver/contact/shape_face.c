@@ -74,10 +74,9 @@ static void choose_candidates(const sf_scene *c, int64_t p, const sf_listing *l)
     nearest n = {.left_out = INFINITY};
     double reach = fmax(l->reach, 2 * sf_shape_limit(&sf_shape_face, true, skin->size[p]));
     for (int k = 0; k < 2; k++) {
+        const sf_grid *grid = k ? &l->support : &l->pad;
         int64_t first = k ? skin->faces : 0,
-                found = sees[k]
-                            ? sf_grid_query(k ? &l->support : &l->pad, x, reach, skin->facet_count, l->found)
-                            : 0;
+                found = sees[k] ? sf_grid_query(grid, x, reach, skin->facet_count, l->found) : 0;
         for (int64_t i = 0; i < found; i++) {
             int64_t f = first + l->found[i];
             double distance = is_candidate(skin, p, f) ? sf_listing_distance(c, x, f) : INFINITY;

@@ -94,12 +94,16 @@ static inline void sf_skin_third(const double *position, const int32_t line[4], 
 /* The nodes among which a force on a facet is shared: 4 of a quadrangle, 3 of a triangle; 0 of a plane, whose
  * number is below 0. */
 static inline int sf_skin_corners(const sf_skin *skin, int64_t facet) {
-    return facet < 0 ? 0 : skin->half[facet] ? 4 : 3;
+    if (facet < 0)
+        return 0;
+    return skin->half[facet] ? 4 : 3;
 }
 
 /* Node k of them: those of the facet, then that of the other half of its quadrangle. */
 static inline int64_t sf_skin_corner(const sf_skin *skin, int64_t facet, int k) {
-    return skin->facet[3 * facet + (k < 3 ? k : skin->half[facet] == 1 ? 5 : -2)];
+    if (k < 3)
+        return skin->facet[3 * facet + k];
+    return skin->facet[3 * facet + (skin->half[facet] == 1 ? 5 : -2)];
 }
 
 /* The support in a pair of node and facet (below 0: a plane); -1: none. */

@@ -81,7 +81,9 @@ static inline double least_part(sf_vec e, sf_vec b, double bound) {
     if (!(excess > 0 && square > 0))
         return 0;
     double root = along * along - square * excess, part = (along - sqrt(root > 0 ? root : 0)) / square;
-    return part > 0 ? (part < 1 ? part : 1) : 0;
+    if (!(part > 0))
+        return 0;
+    return part < 1 ? part : 1;
 }
 
 /* The same with an offset P of the arm: e = x_b - x_a - F (X + P). Where the stiffness rises, e shrinks with

@@ -441,8 +441,8 @@ static sf_status replay(drop *d, sf_error *err) {
     /* A repeated step has the bits of the first time, so that the last valid one is reached. */
     sf_recorder_free(&d->r);
     sf_state_free(d->s);
-    if ((there ? sf_state_create(d->m, d->s, err) : begin_again(d, err)) == SF_OK &&
-        load(d, there ? &last : NULL, err) == SF_OK && run_steps(d, there, err) == SF_OK)
+    SF_TRY(there ? sf_state_create(d->m, d->s, err) : begin_again(d, err));
+    if (load(d, there ? &last : NULL, err) == SF_OK && run_steps(d, there, err) == SF_OK)
         save(d, err);
     return err->status;
 }

@@ -28,9 +28,11 @@ static double foam_place(double low, double high, double part) {
 }
 
 double sf_spline_grade(sf_spline_grading grading, double low, double high, double part) {
-    if (grading == SF_GRADING_FOAM)
-        return part <= 0 ? low : part >= 1 ? high : foam_place(low, high, part);
-    return low + (high - low) * (part - STRENGTH * sin(2 * M_PI * part) / (2 * M_PI));
+    if (grading != SF_GRADING_FOAM)
+        return low + (high - low) * (part - STRENGTH * sin(2 * M_PI * part) / (2 * M_PI));
+    if (part <= 0)
+        return low;
+    return part >= 1 ? high : foam_place(low, high, part);
 }
 
 double sf_spline_part(double high, double strain) {

@@ -126,7 +126,6 @@ static sf_status write_points(const sf_staging *output, const sf_compression_fit
 }
 
 static sf_status write_curves(const sf_staging *output, const sf_compression_fit *fit, sf_error *err) {
-    const sf_compression_test *test = fit->data.config->test;
     bool thermal = fit->data.config->thermal;
     SF_CSV_FILE(csv, output, "loading_curve.csv", err);
     SF_CSV_PRINT_LINE(&csv, "# Loading curves of the fit with their %g %% intervals%s",
@@ -135,9 +134,8 @@ static sf_status write_curves(const sf_staging *output, const sf_compression_fit
     for (int r = 0; r < fit->rate_count; r++)
         for (int k = 0; k < fit->table_count; k++) {
             double stress = fit->table_stress[r][k], width = fit->quantile * fit->table_error[r][k];
-            double at = thermal ? test[r].temperature : fit->rate_count > 1 ? test[r].rate : 0;
-            SF_CSV_LINE(&csv, at, fit->table_strain[k], 1e-3 * stress, 1e-3 * fmax(0, stress - width),
-                        1e-3 * (stress + width));
+            SF_CSV_LINE(&csv, sf_compression_curve_rate(fit, r), fit->table_strain[k], 1e-3 * stress,
+                        1e-3 * fmax(0, stress - width), 1e-3 * (stress + width));
         }
     return sf_csv_close(&csv, err);
 }

@@ -222,9 +222,10 @@ static void estimate_number(const sf_compression_fit *fit, sf_number number, boo
         e->note = at_bound ? AT_BOUND : "not identified by these tests";
         e->error = NAN;
     }
-    bool hu = number == SF_NUMBER_HU, limit = number == SF_NUMBER_LIMIT;
+    bool hu = number == SF_NUMBER_HU, bounded = hu || number == SF_NUMBER_LIMIT;
+    double least = hu ? 0 : r->low;
     if (isfinite(e->error))
-        set_interval(fit, logarithmic, hu ? 0 : limit ? r->low : -INFINITY, hu || limit ? 1 : INFINITY, e);
+        set_interval(fit, logarithmic, bounded ? least : -INFINITY, bounded ? 1 : INFINITY, e);
     if (isfinite(e->error) && hu && e->low <= 0)
         e->note = "not distinguishable from zero by these tests";
 }
@@ -534,6 +535,13 @@ void sf_compression_fit_free(sf_compression_fit *fit) {
     SF_CLEAR(fit, fit->stress);
 }
 
+double sf_compression_curve_rate(const sf_compression_fit *fit, int curve) {
+    const sf_compression_test *test = &fit->data.config->test[curve];
+    if (fit->data.config->thermal)
+        return test->temperature;
+    return fit->rate_count > 1 ? test->rate : 0;
+}
+
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err) {
     const sf_compression_config *c = fit->data.config;
     const sf_estimate *e = fit->estimate;
@@ -563,7 +571,7 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
     int count = fit->table_count;
     SF_TRY(sf_form_curves_alloc(fit->rate_count, (int64_t)fit->rate_count * count, &card->curves, err));
     for (int r = 0; r < fit->rate_count; r++) {
-        card->curve_rate[r] = c->thermal ? c->test[r].temperature : fit->rate_count > 1 ? c->test[r].rate : 0;
+        card->curve_rate[r] = sf_compression_curve_rate(fit, r);
         memcpy(&card->curve_strain[r * count], fit->table_strain, (size_t)count * sizeof(double));
         memcpy(&card->curve_stress[r * count], fit->table_stress[r], (size_t)count * sizeof(double));
     }

@@ -84,6 +84,10 @@ typedef double sf_compression_quantity(const sf_compression_model *model, const 
 double sf_compression_error(const sf_compression_fit *fit, sf_compression_quantity *quantity, int which,
                             double at);
 
+/* Strain rate (1/s) of a loading curve, 0 of the only one for all rates; its temperature (K) where the tests
+ * have one. */
+double sf_compression_curve_rate(const sf_compression_fit *fit, int curve);
+
 /* The foam card of the fit, whose curves have the temperature (K) in place of the rate where the tests have
  * one; released by the caller with sf_foam_card_free. */
 sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card, sf_error *err);
