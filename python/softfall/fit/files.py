@@ -17,7 +17,7 @@ from ..library import GRADES
 from ..memory import nine_digits
 from .drops import GRID
 from .input import KINDS, Input
-from .search import Found, press
+from .search import STRETCH, Found, press
 
 if TYPE_CHECKING:
     from .posterior import Average
@@ -77,19 +77,18 @@ def look_at_curve(s: Study) -> None:
     sd = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", slope, fit.covariance, slope), 0.0))
     wide = np.sqrt(np.sum((slope / np.maximum(p.log_slope(fit.x), 1e-9) * p.sd) ** 2, axis=1))
     left = np.divide(sd, wide, out=np.ones(BINS), where=wide > 0)
-    deepest = max((one.get("max_local_strain") for one in fit.fitted if not one.failure), default=0.0)
-    deepest = max([deepest, *(test.turn for test in s.given.compressions)])
     s.curve = [(float(e), math.exp(y) / 1e3, math.exp(y - fit.half_width * w) / 1e3, math.exp(y + fit.half_width * w) / 1e3, float(part))
                for e, y, w, part in zip(strain, base, sd, left)]
-    seen = [e for e, part in zip(strain, left) if part < 0.5 and e - BIN / 2 < deepest]
-    s.informed = (float(seen[0] - BIN / 2), float(min(seen[-1] + BIN / 2, deepest))) if seen else (0.0, 0.0)
+    seen = [e for e, part in zip(strain, left) if part < 0.5 and e - BIN / 2 < fit.deepest]
+    s.informed = (float(seen[0] - BIN / 2), float(min(seen[-1] + BIN / 2, fit.deepest))) if seen else (0.0, 0.0)
 
 
 def extrapolated(s: Study) -> list[str]:
     """Returns which predicted drops strain the foam beyond what was measured, in words."""
-    deep = [(drop.name, s.fit.own[d].get("max_local_strain")) for d, drop in enumerate(s.given.drops) if drop.predicted and not s.fit.own[d].failure]
-    return [f"{name} strains the foam to {strain:.3f}, the data to {s.informed[1]:.3f}: its interval is an extrapolation, and holds the truth less often than it says: "
-            "measure a drop that strains the foam as far, or at least give the pole, ALPHA and rate_factor wide priors (docs/validation.md, coverage)" for name, strain in deep if strain > s.informed[1]]
+    deep = [(drop.name, s.fit.own[d].get("max_local_strain")) for d, drop in enumerate(s.given.drops) if s.fit.is_beyond(d) and not s.fit.own[d].failure]
+    wide = f", {STRETCH:g} times as wide as the models say" if s.average else ""
+    return [f"{name} strains the foam to {strain:.3f}, the data to {s.fit.deepest:.3f}: its interval is an extrapolation{wide}, and of a foam that locks up early still too narrow: "
+            "measure a drop that strains the foam as far, or at least give the pole, ALPHA and rate_factor wide priors (docs/validation.md, coverage)" for name, strain in deep]
 
 
 def provenance(s: Study) -> str:

@@ -27,7 +27,7 @@ from ..errors import NumericError
 from ..memory import nine_digits
 from .drops import COARSE, OWN
 from .input import CHAIN, KINDS
-from .search import Found, Problem, shift_of
+from .search import STRETCH, Found, Problem, shift_of
 from .work import BENDS
 
 INFLATE = 1.6  # of the Laplace approximation, in standard deviations
@@ -134,6 +134,16 @@ def quantiles(values: Array, weights: Array, shares: Sequence[float] = TAIL) -> 
     order = np.argsort(values)
     places = np.cumsum(weights[order]) / weights.sum()
     return np.asarray(values[order][np.minimum(np.searchsorted(places, np.asarray(shares) - 1e-12), len(values) - 1)])
+
+
+def stretched(q: Array) -> Array:
+    """Returns quantiles TAIL whose logarithms are STRETCH times as far from the median; infinite ones stay.
+
+    >>> stretched(np.exp([-0.2, -0.1, 0.0, 0.1, 0.2])).round(3).tolist()
+    [0.726, 0.852, 1.0, 1.174, 1.377]
+    """
+    middle = q[2]
+    return np.asarray(middle * (q / middle) ** STRETCH) if math.isfinite(middle) else q
 
 
 class Simulated(NamedTuple):
@@ -479,7 +489,8 @@ class Average:
             return np.full(len(TAIL), math.nan)
         random = np.random.default_rng(self.seed + d)
         scatter = self.repeatability(k) if scatter is None else scatter
-        return quantiles(values[known] * np.exp(scatter * random.standard_normal(int(known.sum()))), self.sizes[known])
+        q = quantiles(values[known] * np.exp(scatter * random.standard_normal(int(known.sum()))), self.sizes[known])
+        return stretched(q) if self.first.found.is_beyond(d) else q
 
     def missing(self, d: int, k: int) -> float:
         """Returns the share of draws without a value, as the foam collapses."""
