@@ -2,9 +2,11 @@
 #include "study/fit/form/foam_parameters.h"
 
 static const sf_parameter_info info[SF_PARAMETER_COUNT] = {
-#define SF_FIT_PARAMETER_ROW(id, name, quantity, unit, per_unit, low, high, prior_sd, description)           \
-    [SF_PARAMETER_##id] = {name, quantity, unit, per_unit, low, high, prior_sd, description},
-    SF_FIT_PARAMETERS(SF_FIT_PARAMETER_ROW, SF_QUANTITY_COUNT)};
+#define SF_FIT_IN(quantity, unit, per_unit) quantity, unit, per_unit
+#define SF_FIT_NUMBER SF_QUANTITY_COUNT, "", 1
+#define SF_FIT_FROM(low, high) low, high
+#define SF_FIT_ROW(id, ...) [SF_PARAMETER_##id] = {__VA_ARGS__},
+    SF_FIT_PARAMETERS(SF_FIT_ROW, SF_FIT_IN, SF_FIT_NUMBER, SF_FIT_FROM)};
 
 const sf_parameter_info *sf_parameter_get(sf_foam_parameter parameter) {
     return &info[parameter];
