@@ -51,7 +51,7 @@ void point_law_step(const point_law *law, double dt, const double f[9], sf_law_b
 }
 
 static point_law law_of(const sf_foam *foam) {
-    return (point_law){sf_low_density_foam.update, foam, foam->maxwell, false};
+    return (point_law){sf_low_density_foam.update, foam, foam->options.maxwell, false};
 }
 
 void foam_step(const sf_foam *foam, double dt, const double f[9], sf_law_batch *batch) {

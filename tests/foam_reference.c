@@ -15,7 +15,7 @@ typedef struct principal {
 } principal;
 
 void sf_foam_energies(const sf_foam *foam, double energy, double peak, double *stored, double *lost) {
-    double s = foam->shape, hu = foam->hu;
+    double s = foam->options.shape, hu = foam->options.hu;
     *lost = peak * (1 - hu) * s / (1 + s);
     *stored = peak > 0 ? energy * (hu + (1 - hu) * pow(energy / peak, s) / (1 + s)) : 0;
 }
@@ -86,10 +86,10 @@ static void hysteresis(const sf_foam *foam, double *peak, principal *p) {
         *peak = p->energy;
         return;
     }
-    double power = pow(p->energy / *peak, foam->shape);
-    p->factor = 1 - (1 - foam->hu) * (1 - power);
+    double power = pow(p->energy / *peak, foam->options.shape);
+    p->factor = 1 - (1 - foam->options.hu) * (1 - power);
     if (p->energy > 0)
-        p->softening = (1 - foam->hu) * foam->shape * power / p->energy;
+        p->softening = (1 - foam->options.hu) * foam->options.shape * power / p->energy;
 }
 
 static double quadratic(const principal *p, int i, const double e[6]) {
@@ -125,7 +125,7 @@ static double overstress(const sf_foam *foam, double dt, const principal *p, con
             power += p->t[i] * quadratic(p, i, e) / p->stretch[i];
             size -= p->t[i];
         }
-    *rate += -expm1(-dt / foam->filter_time) * ((size > 0 ? power / size : 0) - *rate);
+    *rate += -expm1(-dt / foam->options.filter_time) * ((size > 0 ? power / size : 0) - *rate);
     for (int i = 0; i < 3; i++) {
         double slope, rate_slope;
         extra[i] = sf_foam_overstress(foam, 1 - p->stretch[i], *rate, &slope, &rate_slope);
@@ -139,7 +139,7 @@ static double overstress(const sf_foam *foam, double dt, const principal *p, con
         if (fabs(gap) > 1e-7)
             bound = larger(bound, (extra[i] - extra[j]) / gap);
     }
-    return bound + sqrt(rates) / foam->filter_time;
+    return bound + sqrt(rates) / foam->options.filter_time;
 }
 
 /* Work of the overstress, by the mean of its values at both ends of the step. */
@@ -173,15 +173,16 @@ static void bounds(const sf_foam *foam, const principal *p, double damp, double 
     const double *t = p->t, *x = p->stretch;
     double size = fabs(t[0]) + fabs(t[1]) + fabs(t[2]);
     for (int i = 0; i < 3; i++) {
-        a[i] = p->factor * p->steepest[i] + p->softening * fabs(t[i]) * size + foam->maxwell * x[i] * x[i];
-        eta[i] = foam->kelvin * x[i] * x[i];
+        a[i] = p->factor * p->steepest[i] + p->softening * fabs(t[i]) * size +
+               foam->options.maxwell * x[i] * x[i];
+        eta[i] = foam->options.kelvin * x[i] * x[i];
     }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
         double gap = x[i] - x[j], opposite = (t[i] + t[j]) / (x[i] + x[j]);
         double equal = fabs(gap) > 1e-7 ? (t[i] - t[j]) / gap : fmax(p->steepest[i], p->steepest[j]);
-        double mean = 0.5 * p->factor * (equal + opposite), half = 0.5 * foam->maxwell;
-        double difference = 0.5 * p->factor * (equal - opposite), kelvin = 0.5 * foam->kelvin;
+        double mean = 0.5 * p->factor * (equal + opposite), half = 0.5 * foam->options.maxwell;
+        double difference = 0.5 * p->factor * (equal - opposite), kelvin = 0.5 * foam->options.kelvin;
         cover_pair(&a[i], &a[j], mean + half * x[i] * x[i], difference + half * x[i] * x[j],
                    mean + half * x[j] * x[j]);
         cover_pair(&eta[i], &eta[j], kelvin * x[i] * x[i], kelvin * x[i] * x[j], kelvin * x[j] * x[j]);
@@ -195,14 +196,15 @@ static void bounds(const sf_foam *foam, const principal *p, double damp, double 
 /* Maxwell branch and Kelvin viscosity (theory eq. 19, 20) into s; returns the norm of their stress. */
 static double viscous(const sf_foam *foam, double dt, sf_law_batch *b, int l, const double e[6],
                       double s[6]) {
-    double decay = exp(-foam->maxwell_rate * dt), norm = 0;
-    double gain = foam->maxwell > 0 ? foam->maxwell / foam->maxwell_rate * (1 - decay) : 0;
+    double decay = exp(-foam->options.maxwell_rate * dt), norm = 0;
+    double gain =
+        foam->options.maxwell > 0 ? foam->options.maxwell / foam->options.maxwell_rate * (1 - decay) : 0;
     for (int k = 0; k < 6; k++) {
         double old = b->history[SF_FOAM_MAXWELL + k][l], now = decay * old + gain * e[k],
                twice = k < 3 ? 1 : 2;
-        double stress = now + foam->kelvin * e[k];
+        double stress = now + foam->options.kelvin * e[k];
         b->history[SF_FOAM_MAXWELL + k][l] = now;
-        b->work[l] += twice * (0.5 * (old + now) + foam->kelvin * e[k]) * e[k] * dt;
+        b->work[l] += twice * (0.5 * (old + now) + foam->options.kelvin * e[k]) * e[k] * dt;
         b->directional[k][l] += stress;
         norm += twice * stress * stress;
         s[k] += stress;
@@ -270,7 +272,7 @@ void foam_reference_update(const sf_foam *foam, double dt, sf_law_batch *b, int 
         added[i] = part[i] - p.factor * p.t[i] / p.stretch[i];
     if (foam->curve_count > 1 && dt > 0)
         work_of(&p, added, dt, e, b, l);
-    double damp = foam->damp * b->length[l] * sqrt(foam->density * b->stiffness[l]);
+    double damp = foam->options.damp * b->length[l] * sqrt(foam->options.density * b->stiffness[l]);
     bounds(foam, &p, damp, a, eta);
     for (int k = 0; k < 6; k++)
         b->directional[k][l] = 0;
@@ -296,6 +298,6 @@ void foam_reference_update(const sf_foam *foam, double dt, sf_law_batch *b, int 
             for (int k = 0; k < 3; k++)
                 b->p[3 * i + j][l] += b->f[3 * i + k][l] * s[SYM[k][j]];
         }
-    if (foam->damp > 0 && dt > 0)
+    if (foam->options.damp > 0 && dt > 0)
         damping(dt, damp, b, l);
 }

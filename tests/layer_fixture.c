@@ -67,11 +67,11 @@ double layers_stress(const sf_material *material, double strain) {
 }
 
 static void drop_losses(sf_foam_card *card) {
-    card->hysteresis_hu = 1;
-    card->damp = 0;
-    card->maxwell_modulus = 0;
-    card->kelvin_viscosity = 0;
-    card->rate_factor = 0;
+    card->shared.hysteresis_hu = 1;
+    card->shared.damp = 0;
+    card->shared.maxwell_modulus = 0;
+    card->shared.kelvin_viscosity = 0;
+    card->shared.rate_factor = 0;
 }
 
 void layers_make_linear(sf_material *material, double modulus, double density) {
@@ -79,12 +79,12 @@ void layers_make_linear(sf_material *material, double modulus, double density) {
     sf_foam_card *card = sf_foam_card_of(material);
     drop_losses(card);
     card->modulus = modulus;
-    card->density = density;
+    card->shared.density = density;
     for (int k = 0; k < POINTS; k++) {
-        card->curve_strain[k] = 0.2 * k;
-        card->curve_stress[k] = 0.2 * k * modulus;
+        card->curves.curve_strain[k] = 0.2 * k;
+        card->curves.curve_stress[k] = 0.2 * k * modulus;
     }
-    card->curve_points = card->curve_ptr[1] = POINTS;
+    card->curves.curve_points = card->curves.curve_ptr[1] = POINTS;
     card->densification_start = card->densification_exponent = 0;
     card->densification_limit = 1;
 }
@@ -93,6 +93,6 @@ void layers_make_elastic(sf_material *material, double factor) {
     sf_foam_card *card = sf_foam_card_of(material);
     drop_losses(card);
     card->modulus *= factor;
-    for (int64_t k = 0; k < card->curve_points; k++)
-        card->curve_stress[k] *= factor;
+    for (int64_t k = 0; k < card->curves.curve_points; k++)
+        card->curves.curve_stress[k] *= factor;
 }

@@ -70,25 +70,25 @@ void fixture_case(sf_case *c, const char *const *overrides) {
 
 void fixture_make_elastic(sf_case *c) {
     sf_foam_card *card = sf_foam_card_of(&c->material);
-    card->hysteresis_hu = 1;
-    card->damp = 0;
-    card->maxwell_modulus = 0;
-    card->kelvin_viscosity = 0;
+    card->shared.hysteresis_hu = 1;
+    card->shared.damp = 0;
+    card->shared.maxwell_modulus = 0;
+    card->shared.kelvin_viscosity = 0;
 }
 
 void fixture_make_linear(sf_case *c) {
     enum { POINTS = 5 };
     sf_foam_card *card = sf_foam_card_of(&c->material);
     fixture_make_elastic(c);
-    free(card->curve_strain);
-    free(card->curve_stress);
-    card->curve_strain = allocate(POINTS, sizeof(double));
-    card->curve_stress = allocate(POINTS, sizeof(double));
+    free(card->curves.curve_strain);
+    free(card->curves.curve_stress);
+    card->curves.curve_strain = allocate(POINTS, sizeof(double));
+    card->curves.curve_stress = allocate(POINTS, sizeof(double));
     for (int k = 0; k < POINTS; k++) {
-        card->curve_strain[k] = 0.2 * k;
-        card->curve_stress[k] = 0.2 * k * card->modulus;
+        card->curves.curve_strain[k] = 0.2 * k;
+        card->curves.curve_stress[k] = 0.2 * k * card->modulus;
     }
-    card->curve_points = card->curve_ptr[1] = POINTS;
+    card->curves.curve_points = card->curves.curve_ptr[1] = POINTS;
     card->densification_start = card->densification_exponent = 0;
     card->densification_limit = 1;
 }

@@ -15,30 +15,30 @@ double point_eva_stress(double strain) {
 void point_card_init(point_card *card) {
     memset(card, 0, sizeof *card);
     card->card = (sf_foam_card){
-        .density = 35,
+        .shared.density = 35,
         .modulus = 0.4e6,
-        .hysteresis_hu = 1,
-        .hysteresis_shape = 1,
-        .hysteresis_alpha = 1,
+        .shared.hysteresis_hu = 1,
+        .shared.hysteresis_shape = 1,
+        .shared.hysteresis_alpha = 1,
         .tension_cutoff = 1e30,
         .densification_limit = 1,
-        .rate_filter_time = 1e-4,
-        .curve_rate = card->rate,
-        .curve_ptr = card->ptr,
-        .curve_strain = card->strain,
-        .curve_stress = card->stress,
+        .shared.rate_filter_time = 1e-4,
+        .curves.curve_rate = card->rate,
+        .curves.curve_ptr = card->ptr,
+        .curves.curve_strain = card->strain,
+        .curves.curve_stress = card->stress,
     };
 }
 
 void point_card_add(point_card *card, double rate, int64_t count, const double *strain,
                     const double *stress) {
-    int64_t first = card->card.curve_points;
-    assert(card->card.curve_count < POINT_CURVES && first + count <= POINT_CURVE_ROOM);
+    int64_t first = card->card.curves.curve_points;
+    assert(card->card.curves.curve_count < POINT_CURVES && first + count <= POINT_CURVE_ROOM);
     memcpy(&card->strain[first], strain, (size_t)count * sizeof *strain);
     memcpy(&card->stress[first], stress, (size_t)count * sizeof *stress);
-    card->rate[card->card.curve_count++] = rate;
-    card->card.curve_points += count;
-    card->ptr[card->card.curve_count] = card->card.curve_points;
+    card->rate[card->card.curves.curve_count++] = rate;
+    card->card.curves.curve_points += count;
+    card->ptr[card->card.curves.curve_count] = card->card.curves.curve_points;
 }
 
 void point_card_add_eva(point_card *card, double rate, int64_t count, double last, double factor) {

@@ -205,16 +205,19 @@ static void no_mass(sf_model *m) {
     m->mass[0] = 0;
 }
 static void falling_curve(sf_model *m) {
-    sf_foam_card_of(&m->material[0])->curve_stress[sf_foam_card_of(&m->material[0])->curve_points - 1] = 0;
+    sf_foam_card_of(&m->material[0])
+        ->curves.curve_stress[sf_foam_card_of(&m->material[0])->curves.curve_points - 1] = 0;
 }
 static void no_curve(sf_model *m) {
-    sf_foam_card_of(&m->material[0])->curve_ptr[sf_foam_card_of(&m->material[0])->curve_count] -= 1;
+    sf_foam_card_of(&m->material[0])
+        ->curves.curve_ptr[sf_foam_card_of(&m->material[0])->curves.curve_count] -= 1;
 }
 static void curve_from_nowhere(sf_model *m) {
-    sf_foam_card_of(&m->material[0])->curve_stress[0] = 1;
+    sf_foam_card_of(&m->material[0])->curves.curve_stress[0] = 1;
 }
 static void curve_of_three_points(sf_model *m) {
-    sf_foam_card_of(&m->material[0])->curve_points = sf_foam_card_of(&m->material[0])->curve_ptr[1] = 3;
+    sf_foam_card_of(&m->material[0])->curves.curve_points =
+        sf_foam_card_of(&m->material[0])->curves.curve_ptr[1] = 3;
 }
 static void material_out_of_range(sf_model *m) {
     m->node_material[m->node_count - 1] = 1;
@@ -270,7 +273,7 @@ static void cell_beyond_nodes(sf_model *m) {
     m->cell_node[m->cell_nnz - 1] = (int32_t)m->node_count;
 }
 static void no_hysteresis_unit(sf_model *m) {
-    sf_foam_card_of(&m->material[0])->hysteresis_hu = 0;
+    sf_foam_card_of(&m->material[0])->shared.hysteresis_hu = 0;
 }
 static void fast_missile(sf_model *m) {
     m->missile.speed = -4.5;

@@ -33,11 +33,12 @@ static void good_case_is_in_si(void **state) {
         "  fields = [\"displacement\", \"von_mises\"]; };\n",
         NULL, &c);
     const sf_foam_card *foam = sf_foam_card_of(&c.material);
-    assert_true(fabs(foam->density - 35.0) < 1e-12);
+    assert_true(fabs(foam->shared.density - 35.0) < 1e-12);
     assert_true(fabs(foam->modulus - 413600.0) < 1e-8);
-    assert_true(foam->hysteresis_hu == 0.01 && foam->hysteresis_shape == 2.0 && foam->damp == 0.35);
-    assert_true(fabs(foam->damp_length - 0.005) < 1e-16 && foam->maxwell_rate == 5000.0);
-    assert_true(fabs(foam->maxwell_modulus - 3.43e6) < 1e-8 && foam->kelvin_viscosity == 690.0);
+    assert_true(foam->shared.hysteresis_hu == 0.01 && foam->shared.hysteresis_shape == 2.0 &&
+                foam->shared.damp == 0.35);
+    assert_true(fabs(foam->shared.damp_length - 0.005) < 1e-16 && foam->shared.maxwell_rate == 5000.0);
+    assert_true(fabs(foam->shared.maxwell_modulus - 3.43e6) < 1e-8 && foam->shared.kelvin_viscosity == 690.0);
     assert_true(foam->tension_cutoff == 20000.0 && foam->densification_exponent == 3.0);
     assert_true(foam->densification_start == 0.7 && foam->densification_limit == 1.0);
     assert_true(fabs(c.missile_card.mass - 4.6) < 1e-14 && fabs(c.missile_card.speed - 4.5) < 1e-14);
@@ -60,9 +61,9 @@ static void good_case_is_in_si(void **state) {
     assert_true(fabs(c.frame_time[0] - 3e-4) < 1e-18 && fabs(c.frame_time[1] - 0.0122) < 1e-16);
     assert_int_equal(c.run.stop_after_rebound, 0);
     assert_int_equal(c.run.output_fields, SF_FIELD_DISPLACEMENT | SF_FIELD_VON_MISES);
-    assert_int_equal(foam->curve_count, 1);
-    assert_int_equal(foam->curve_points, 4);
-    assert_true(foam->curve_strain[2] == 0.5 && foam->curve_stress[2] == 100e3);
+    assert_int_equal(foam->curves.curve_count, 1);
+    assert_int_equal(foam->curves.curve_points, 4);
+    assert_true(foam->curves.curve_strain[2] == 0.5 && foam->curves.curve_stress[2] == 100e3);
 }
 
 static void defaults_are_those_of_the_table(void **state) {
@@ -77,7 +78,8 @@ static void defaults_are_those_of_the_table(void **state) {
     assert_string_equal(c.symmetry_group[1], "symmetry_y");
     assert_string_equal(c.surface_group, "missile_surface");
     assert_true(c.support_ratio == 1.4 && c.run.stabilisation == 0.1 && c.run.step_safety == 0.97);
-    assert_true(foam->hysteresis_hu == 1.0 && foam->damp_length == 0.0 && foam->maxwell_modulus == 0.0);
+    assert_true(foam->shared.hysteresis_hu == 1.0 && foam->shared.damp_length == 0.0 &&
+                foam->shared.maxwell_modulus == 0.0);
     assert_true(foam->tension_cutoff >= 1e30 && isfinite(foam->tension_cutoff));
     assert_true(c.missile_card.direction[2] == -1.0);
     assert_int_equal(c.run.output_fields, SF_FIELD_ALL);
@@ -141,8 +143,8 @@ static void set_replaces_a_group_by_a_file(void **state) {
     snprintf(set, sizeof set, "material=@%s", case_path("materials/soft.cfg"));
     case_read_good(GOOD, set, &c);
     const sf_foam_card *foam = sf_foam_card_of(&c.material);
-    assert_int_equal(foam->curve_points, 4);
-    assert_true(foam->curve_stress[3] == 0.9e6); /* inner.csv, beside soft.cfg */
+    assert_int_equal(foam->curves.curve_points, 4);
+    assert_true(foam->curves.curve_stress[3] == 0.9e6); /* inner.csv, beside soft.cfg */
     assert_non_null(strstr(c.text, "#     curve = \"inner.csv\";\n"));
     sf_case_free(&c);
 
@@ -216,8 +218,9 @@ static void include_brings_its_own_folder_for_the_curve(void **state) {
     SF_OWNED_BY(sf_case_free) sf_case c = {0};
     case_read_good(GEOMETRY "material: {\n@include \"materials/soft.cfg\"\n};\n" MISSILE SOLVER, NULL, &c);
     const sf_foam_card *foam = sf_foam_card_of(&c.material);
-    assert_int_equal(foam->curve_points, 4);
-    assert_true(fabs(foam->curve_strain[1] - 0.1) < 1e-16 && fabs(foam->curve_stress[3] - 0.9e6) < 1e-9);
+    assert_int_equal(foam->curves.curve_points, 4);
+    assert_true(fabs(foam->curves.curve_strain[1] - 0.1) < 1e-16 &&
+                fabs(foam->curves.curve_stress[3] - 0.9e6) < 1e-9);
     assert_non_null(strstr(c.text, "density = \"35 kg/m3\";\nE = "));
     assert_null(strstr(c.text, "@include"));
 }
@@ -233,7 +236,7 @@ static void include_may_be_absolute(void **state) {
              case_path("materials/soft.cfg"), MISSILE, SOLVER);
     sf_case c;
     case_read_good(text, NULL, &c);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, 4);
+    assert_int_equal(sf_foam_card_of(&c.material)->curves.curve_points, 4);
     sf_case_free(&c);
     case_assert_refused(text, "missile.mass=3", "--set missile.mass=3: ", NULL);
     snprintf(text, sizeof text, "%smaterial: {\n@include \"%s\"\n};\n%s%s", GEOMETRY,
@@ -310,9 +313,9 @@ static void examples_are_the_drops_they_are_called(void **state) {
         }
         assert_int_equal(seen, 2);
         assert_true(c.missile_card.speed == drops[k].speed && c.missile_card.mass == 4.6);
-        assert_true(sf_foam_card_of(&c.material)->density == 35.0 &&
-                    sf_foam_card_of(&c.material)->rate_factor > 0.3 &&
-                    sf_foam_card_of(&c.material)->damp == 0.05);
+        assert_true(sf_foam_card_of(&c.material)->shared.density == 35.0 &&
+                    sf_foam_card_of(&c.material)->shared.rate_factor > 0.3 &&
+                    sf_foam_card_of(&c.material)->shared.damp == 0.05);
         sf_case_free(&c);
     }
 }

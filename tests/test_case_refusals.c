@@ -391,7 +391,7 @@ static void hyperfoam_terms_are_checked(void **state) {
         NULL, &c);
     const sf_hyperfoam_card *card = c.material.card;
     assert_true(card->term[0].mu == 2e5 && card->term[1].mu == 0 && card->term[2].beta == 0.1);
-    assert_true(card->hysteresis_alpha == 0.4 && sf_material_informed(&c.material) == 0.3);
+    assert_true(card->shared.hysteresis_alpha == 0.4 && sf_material_informed(&c.material) == 0.3);
 }
 
 int main(void) {

@@ -35,13 +35,13 @@ static void curves_at_several_rates_ascend(void **state) {
         "{ rate = \"0.01 1/s\"; file = \"foam.csv\"; }, { rate = \"100 1/s\"; file = \"fast.csv\"; } ); };\n",
         NULL, &c);
     const sf_foam_card *foam = sf_foam_card_of(&c.material);
-    assert_int_equal(foam->curve_count, 2);
-    assert_int_equal(foam->curve_points, 8);
-    assert_int_equal(foam->curve_ptr[1], 4);
-    assert_int_equal(foam->curve_ptr[2], 8);
-    assert_true(foam->curve_rate[0] == 0.01 && foam->curve_rate[1] == 100.0);
-    assert_true(foam->curve_strain[7] == 0.7 && foam->curve_stress[7] == 1.5e6 &&
-                foam->curve_stress[3] == 9e5);
+    assert_int_equal(foam->curves.curve_count, 2);
+    assert_int_equal(foam->curves.curve_points, 8);
+    assert_int_equal(foam->curves.curve_ptr[1], 4);
+    assert_int_equal(foam->curves.curve_ptr[2], 8);
+    assert_true(foam->curves.curve_rate[0] == 0.01 && foam->curves.curve_rate[1] == 100.0);
+    assert_true(foam->curves.curve_strain[7] == 0.7 && foam->curves.curve_stress[7] == 1.5e6 &&
+                foam->curves.curve_stress[3] == 9e5);
 }
 
 static void rate_curves_are_checked(void **state) {
@@ -200,8 +200,8 @@ static void what_a_curve_is_read_as_is_told(void **state) {
     case_write("case.cfg", DRIVEN(""));
     if (sf_case_read(case_path("case.cfg"), 1, &override, &sink, &c, &err) != SF_OK)
         fail_msg("%s", err.text);
-    assert_true(sf_foam_card_of(&c.material)->curve_strain[1] == 0.105 &&
-                sf_foam_card_of(&c.material)->curve_stress[3] == 0.9e6);
+    assert_true(sf_foam_card_of(&c.material)->curves.curve_strain[1] == 0.105 &&
+                sf_foam_card_of(&c.material)->curves.curve_stress[3] == 0.9e6);
     assert_non_null(strstr(
         told, "lab.csv: nominal stress over nominal strain in compression, columns 2 and 1, strain in %, "
               "stress in MPa (softfall read lab.xlsx: sheet \"A\")"));

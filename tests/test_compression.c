@@ -46,7 +46,7 @@ static void start_cube(fixture *f, double friction, int count, const double *tim
     fixture_hold(&c, (const char *const[]){"base", NULL});
     fixture_mirror(&c, 2);
     c.symmetry_given = true;
-    sf_foam_card_of(&c.material)->maxwell_modulus = 0;
+    sf_foam_card_of(&c.material)->shared.maxwell_modulus = 0;
     c.missile_card.friction = friction;
     drive(&c, count, time, displacement);
     fixture_under_plate(&c, &block, 0.2, 0, 0, f);
@@ -65,8 +65,8 @@ static double law(const fixture *f, const sf_curve *curve, double strain, double
     double stress, slope, energy, unused, largest;
     sf_curve_evaluate(curve, strain, &stress, &slope, &energy);
     sf_curve_evaluate(curve, deepest, &unused, &slope, &largest);
-    double part = strain < deepest ? pow(energy / largest, foam->hysteresis_shape) : 1;
-    return stress * (1 - (1 - foam->hysteresis_hu) * (1 - part));
+    double part = strain < deepest ? pow(energy / largest, foam->shared.hysteresis_shape) : 1;
+    return stress * (1 - (1 - foam->shared.hysteresis_hu) * (1 - part));
 }
 
 static double energy_to(const sf_curve *curve, double strain) {
@@ -129,7 +129,7 @@ static void a_release_returns_the_energy_of_the_law(void **state) {
             1) /* of the work that catches the surface up it keeps one half, contact loses the other */
             assert_relative(s->ledger.contact, s->ledger.kinetic_pad, 1e-3);
     }
-    double hu = foam->hysteresis_hu, expected = hu + (1 - hu) / (1 + foam->hysteresis_shape);
+    double hu = foam->shared.hysteresis_hu, expected = hu + (1 - hu) / (1 + foam->shared.hysteresis_shape);
     assert_int_equal(s->contact_count, 0);
     assert_close((work - s->ledger.external) / work, expected, 0.005);
     assert_relative(s->ledger.hysteresis + s->ledger.viscous + s->ledger.contact + s->ledger.kinetic_pad +

@@ -14,7 +14,7 @@
 static sf_curve built(const point_card *card) {
     sf_error err = SF_ERROR_INIT;
     sf_curve curve;
-    if (sf_curve_build(&card->card, card->card.curve_count - 1, &curve, &err) != SF_OK)
+    if (sf_curve_build(&card->card, card->card.curves.curve_count - 1, &curve, &err) != SF_OK)
         fail_msg("%s", err.text);
     return curve;
 }

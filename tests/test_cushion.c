@@ -41,16 +41,16 @@ static void point_is_the_foam_law(void **state) {
     point_card_init(&card);
     point_card_add_eva(&card, 0, 120, 0.9, 1);
     assert_uniaxial_is_the_law(&card);
-    card.card.hysteresis_hu = 0.05;
-    card.card.hysteresis_shape = 2.5;
-    card.card.maxwell_modulus = 3e6;
-    card.card.maxwell_rate = 4000;
-    card.card.kelvin_viscosity = 300;
+    card.card.shared.hysteresis_hu = 0.05;
+    card.card.shared.hysteresis_shape = 2.5;
+    card.card.shared.maxwell_modulus = 3e6;
+    card.card.shared.maxwell_rate = 4000;
+    card.card.shared.kelvin_viscosity = 300;
     assert_uniaxial_is_the_law(&card);
     point_card_add_eva(&card, 1, 120, 0.9, 1.2);
     point_card_add_eva(&card, 100, 120, 0.9, 1.5);
-    card.card.curve_rate[0] = 0.01;
-    card.card.rate_filter_time = 1e-4;
+    card.card.curves.curve_rate[0] = 0.01;
+    card.card.shared.rate_filter_time = 1e-4;
     assert_uniaxial_is_the_law(&card);
 }
 
@@ -100,14 +100,14 @@ static void peak_is_that_of_fine_steps(void **state) {
         point_card_add_eva(&card, 0, 120, 0.9, 1);
         if (foam[k].curves == 2) {
             point_card_add_eva(&card, 100, 120, 0.9, 1.3);
-            card.card.curve_rate[0] = 0.01;
-            card.card.rate_filter_time = 1e-4;
+            card.card.curves.curve_rate[0] = 0.01;
+            card.card.shared.rate_filter_time = 1e-4;
         }
-        card.card.hysteresis_hu = foam[k].hu;
-        card.card.hysteresis_shape = foam[k].shape;
-        card.card.maxwell_modulus = foam[k].maxwell;
-        card.card.maxwell_rate = foam[k].beta;
-        card.card.kelvin_viscosity = foam[k].kelvin;
+        card.card.shared.hysteresis_hu = foam[k].hu;
+        card.card.shared.hysteresis_shape = foam[k].shape;
+        card.card.shared.maxwell_modulus = foam[k].maxwell;
+        card.card.shared.maxwell_rate = foam[k].beta;
+        card.card.shared.kelvin_viscosity = foam[k].kelvin;
         foam_build(&card, &built);
         const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &built};
         for (size_t b = 0; b < sizeof block / sizeof block[0]; b++) {

@@ -352,7 +352,7 @@ static void lumped_masses_sum_to_density_times_volume(void **state) {
         assert_true(f.model.mass[i] > 0);
         sum += f.model.mass[i];
     }
-    assert_relative(sum, sf_foam_card_of(&f.model.material[0])->density * 64e-6, 1e-12);
+    assert_relative(sum, sf_foam_card_of(&f.model.material[0])->shared.density * 64e-6, 1e-12);
     fixture_free(&f);
 }
 

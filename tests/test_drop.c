@@ -89,11 +89,11 @@ static void build(loss losses, const char *const *overrides, fixture *f) {
     sf_mesh mesh;
     sf_surface surface;
     fixture_case(&c, overrides);
-    double hu = sf_foam_card_of(&c.material)->hysteresis_hu;
+    double hu = sf_foam_card_of(&c.material)->shared.hysteresis_hu;
     if (losses != ALL_LOSSES)
         fixture_make_elastic(&c);
     if (losses == HYSTERESIS_ONLY)
-        sf_foam_card_of(&c.material)->hysteresis_hu = hu;
+        sf_foam_card_of(&c.material)->shared.hysteresis_hu = hu;
     fixture_geometry(&c, &mesh, &surface);
     fixture_build(&c, &mesh, &surface, f);
 }
@@ -299,9 +299,9 @@ static void assert_survives(const char *const *overrides) {
     drop d;
     build(ALL_LOSSES, overrides, &f);
     sf_foam_card *card = sf_foam_card_of(&f.model.material[0]);
-    card->maxwell_modulus = 0;
-    card->hysteresis_hu = 0.9;
-    card->damp = 0.05;
+    card->shared.maxwell_modulus = 0;
+    card->shared.hysteresis_hu = 0.9;
+    card->shared.damp = 0.05;
     sf_curve curve;
     sf_error err = SF_ERROR_INIT;
     assert_int_equal(sf_curve_build(card, 0, &curve, &err), SF_OK);
@@ -335,9 +335,9 @@ static void a_run_survives_a_curve_that_ends_softly(void **state) {
               "material.densification.exponent=0.4", "missile.velocity=8 m/s", NULL},
           &f);
     sf_foam_card *card = sf_foam_card_of(&f.model.material[0]);
-    card->maxwell_modulus = 0;
-    for (int64_t k = 0; k < card->curve_points; k++)
-        card->curve_stress[k] *= 0.2;
+    card->shared.maxwell_modulus = 0;
+    for (int64_t k = 0; k < card->curves.curve_points; k++)
+        card->curves.curve_stress[k] *= 0.2;
     run(&f, 0.04, &d);
     print_message("largest strain %.4f, %lld steps, energy error %.2g\n", d.compression, (long long)d.steps,
                   d.energy_error);

@@ -114,8 +114,8 @@ static void make_foam(sf_foam *foam, double hu, double shape) {
     point_card card;
     point_card_init(&card);
     point_card_add_eva(&card, 0, 60, 0.8, 1);
-    card.card.hysteresis_hu = hu;
-    card.card.hysteresis_shape = shape;
+    card.card.shared.hysteresis_hu = hu;
+    card.card.shared.hysteresis_shape = shape;
     foam_build(&card, foam);
 }
 
@@ -275,8 +275,8 @@ static void returned_energy_fraction_depends_on_hu_and_shape_only(void **state) 
                 sf_foam foam;
                 double done, returned;
                 point_card_init(&card);
-                card.card.hysteresis_hu = hu[k];
-                card.card.hysteresis_shape = shape[k];
+                card.card.shared.hysteresis_hu = hu[k];
+                card.card.shared.hysteresis_shape = shape[k];
                 if (curve == 0)
                     point_card_add_eva(&card, 0, 60, 0.6, 1); /* into the densification */
                 else

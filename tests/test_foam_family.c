@@ -41,7 +41,7 @@ static void sustained_rate_gives_the_curve_of_that_rate(void **state) {
     (void)state;
     sf_foam foam;
     make_family(&foam);
-    foam.filter_time = 1e-5; /* far below the time of the fastest compression */
+    foam.options.filter_time = 1e-5; /* far below the time of the fastest compression */
     assert_close(stress_ratio(&foam, 1), 1, 1e-4);
     assert_close(stress_ratio(&foam, 30), 1.4, 1e-4);
     assert_close(stress_ratio(&foam, 200), 1.9, 1e-4);

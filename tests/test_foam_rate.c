@@ -18,10 +18,10 @@ static void make_foam(sf_foam *foam, double maxwell, double maxwell_rate, double
     point_card card;
     point_card_init(&card);
     point_card_add_eva(&card, 0, 60, 0.8, 1);
-    card.card.maxwell_modulus = maxwell;
-    card.card.maxwell_rate = maxwell_rate;
-    card.card.kelvin_viscosity = kelvin;
-    card.card.damp = damp;
+    card.card.shared.maxwell_modulus = maxwell;
+    card.card.shared.maxwell_rate = maxwell_rate;
+    card.card.shared.kelvin_viscosity = kelvin;
+    card.card.shared.damp = damp;
     foam_build(&card, foam);
 }
 
@@ -380,11 +380,11 @@ static void lanes_are_independent(void **state) {
     point_card_init(&card);
     point_card_add_eva(&card, 1, 60, 0.8, 1);
     point_card_add_eva(&card, 100, 60, 0.8, 1.5);
-    card.card.maxwell_modulus = 3e6;
-    card.card.maxwell_rate = 5000;
-    card.card.kelvin_viscosity = 50;
-    card.card.damp = 0.35;
-    card.card.hysteresis_hu = 0.01;
+    card.card.shared.maxwell_modulus = 3e6;
+    card.card.shared.maxwell_rate = 5000;
+    card.card.shared.kelvin_viscosity = 50;
+    card.card.shared.damp = 0.35;
+    card.card.shared.hysteresis_hu = 0.01;
     foam_build(&card, &foam);
     for (int trial = 0; trial < 100; trial++) {
         sf_law_batch mixed;

@@ -17,9 +17,10 @@ static const double MODULUS = 0.4136e6, DENSITY = 35, SOLID = 940; /* EVA of Pen
 
 /* Values of a form at its medians, for this EVA. */
 static void medians(const sf_curve_form *curve, double value[SF_PARAMETER_COUNT]) {
-    const sf_foam_form form = {.base = {.density = DENSITY, .modulus = MODULUS, .hysteresis_alpha = 0.5},
-                               .curve = curve,
-                               .solid_density = SOLID};
+    const sf_foam_form form = {
+        .base = {.shared.density = DENSITY, .modulus = MODULUS, .shared.hysteresis_alpha = 0.5},
+        .curve = curve,
+        .solid_density = SOLID};
     sf_foam_form_start(&form, value);
 }
 
@@ -192,7 +193,7 @@ static void a_lock_up_of_its_own_continues_the_form(void **state) {
         for (double strain = 0.05; strain < 0.93; strain += 0.05)
             assert_true(sf_curve_form_stress(form, locked, strain) ==
                         sf_curve_form_stress(form, value, strain));
-        sf_foam_form foam = {.curve = form, .base = {.density = DENSITY}, .solid_density = SOLID};
+        sf_foam_form foam = {.curve = form, .base = {.shared.density = DENSITY}, .solid_density = SOLID};
         assert_true(sf_foam_form_prior_sd(&foam, SF_PARAMETER_LOCKED) == 0.7);
     }
     double value[SF_PARAMETER_COUNT] = {[SF_PARAMETER_SOLID_FRACTION] = 0.1};
@@ -226,7 +227,7 @@ static void refuse(const sf_curve_form *form, sf_foam_parameter parameter, doubl
     assert_int_equal(sf_curve_form_tabulate(form, value, &card, &err), SF_ERR_NUMERIC);
     if (!strstr(err.text, reason))
         fail_msg("\"%s\" was expected, got: %s", reason, err.text);
-    assert_null(card.curve_strain);
+    assert_null(card.curves.curve_strain);
 }
 
 static void values_that_make_no_curve_are_refused(void **state) {
@@ -244,8 +245,9 @@ static void values_that_make_no_curve_are_refused(void **state) {
  * refuses, with a densification that is next to a wall. */
 static void a_fine_table_ends_at_1_gpa(void **state) {
     (void)state;
-    const sf_foam_form form = {.base = {.density = DENSITY, .modulus = MODULUS, .densification_limit = 1},
-                               .curve = &sf_form_avalle};
+    const sf_foam_form form = {
+        .base = {.shared.density = DENSITY, .modulus = MODULUS, .densification_limit = 1},
+        .curve = &sf_form_avalle};
     double value[SF_PARAMETER_COUNT];
     sf_foam_card card;
     sf_error err = SF_ERROR_INIT;
@@ -254,10 +256,10 @@ static void a_fine_table_ends_at_1_gpa(void **state) {
     value[SF_PARAMETER_AVALLE_N] = 5;
     assert_int_equal(sf_foam_form_card(&form, value, &card, &err), SF_OK);
     assert_int_equal(sf_foam_card_resample(&card, &err), SF_OK);
-    int64_t last = card.curve_points - 1;
-    assert_true(card.curve_stress[last] <= 1e9 && card.curve_stress[last] > 1e8);
-    assert_true(card.curve_stress[last] - card.curve_stress[last - 1] <
-                1e12 * (card.curve_strain[last] - card.curve_strain[last - 1]));
+    int64_t last = card.curves.curve_points - 1;
+    assert_true(card.curves.curve_stress[last] <= 1e9 && card.curves.curve_stress[last] > 1e8);
+    assert_true(card.curves.curve_stress[last] - card.curves.curve_stress[last - 1] <
+                1e12 * (card.curves.curve_strain[last] - card.curves.curve_strain[last - 1]));
     sf_foam_card_free(&card);
 }
 
@@ -267,18 +269,18 @@ static void a_card_has_the_values(void **state) {
     double rate = 0, strain[3] = {0, 0.4, 0.8}, stress[3] = {0, 50e3, 900e3};
     int64_t ptr[2] = {0, 3};
     for (int f = 0; f < SF_CURVE_FORMS; f++) {
-        const sf_foam_form form = {.base = {.density = DENSITY,
+        const sf_foam_form form = {.base = {.shared.density = DENSITY,
                                             .modulus = MODULUS,
-                                            .hysteresis_hu = 0.1,
-                                            .hysteresis_shape = 2,
-                                            .hysteresis_alpha = 0.5,
+                                            .shared.hysteresis_hu = 0.1,
+                                            .shared.hysteresis_shape = 2,
+                                            .shared.hysteresis_alpha = 0.5,
                                             .densification_limit = 1,
-                                            .curve_rate = &rate,
-                                            .curve_ptr = ptr,
-                                            .curve_strain = strain,
-                                            .curve_stress = stress,
-                                            .curve_count = 1,
-                                            .curve_points = 3},
+                                            .curves.curve_rate = &rate,
+                                            .curves.curve_ptr = ptr,
+                                            .curves.curve_strain = strain,
+                                            .curves.curve_stress = stress,
+                                            .curves.curve_count = 1,
+                                            .curves.curve_points = 3},
                                    .curve = sf_curve_form_get(f)};
         double value[SF_PARAMETER_COUNT];
         sf_foam_card card;
@@ -291,10 +293,12 @@ static void a_card_has_the_values(void **state) {
         value[SF_PARAMETER_ALPHA] = 0.3;
         value[SF_PARAMETER_STRESS_SCALE] = 2;
         assert_int_equal(sf_foam_form_card(&form, value, &card, &err), SF_OK);
-        assert_true(card.hysteresis_alpha == 0.3 && card.hysteresis_hu == 0.1 && card.hysteresis_shape == 2);
-        assert_true(card.modulus == MODULUS && card.rate_factor == 0.2 && card.rate_reference == 1);
+        assert_true(card.shared.hysteresis_alpha == 0.3 && card.shared.hysteresis_hu == 0.1 &&
+                    card.shared.hysteresis_shape == 2);
+        assert_true(card.modulus == MODULUS && card.shared.rate_factor == 0.2 &&
+                    card.shared.rate_reference == 1);
         if (form.curve == &sf_form_table)
-            assert_true(card.curve_points == 3 && card.curve_stress[1] == 100e3);
+            assert_true(card.curves.curve_points == 3 && card.curves.curve_stress[1] == 100e3);
         sf_foam_card_free(&card);
         if (form.curve != &sf_form_table)
             continue;

@@ -18,13 +18,13 @@
 
 /* One term of nu, in the range of foams; no hysteresis, no viscosity. */
 static sf_hyperfoam_card simple_card(double alpha, double nu) {
-    return (sf_hyperfoam_card){.density = 100,
-                               .hysteresis_hu = 1,
-                               .hysteresis_shape = 1,
-                               .hysteresis_alpha = 1,
-                               .maxwell_rate = 5000,
-                               .rate_reference = 0.01,
-                               .rate_filter_time = 1e-4,
+    return (sf_hyperfoam_card){.shared.density = 100,
+                               .shared.hysteresis_hu = 1,
+                               .shared.hysteresis_shape = 1,
+                               .shared.hysteresis_alpha = 1,
+                               .shared.maxwell_rate = 5000,
+                               .shared.rate_reference = 0.01,
+                               .shared.rate_filter_time = 1e-4,
                                .stable_to = 0.9,
                                .term = {{.mu = 2e5, .alpha = alpha, .nu = nu}}};
 }
@@ -41,7 +41,7 @@ static sf_hyperfoam_card rich_card(void) {
 }
 
 static point_law law_of(const sf_hyperfoam *foam) {
-    return (point_law){sf_hyperfoam_law.update, foam, foam->maxwell, false};
+    return (point_law){sf_hyperfoam_law.update, foam, foam->options.maxwell, false};
 }
 
 /* The batch at F, without viscosity, when the largest W so far was `peak`. */
@@ -183,8 +183,8 @@ static void free_sides_move_by_the_power_minus_nu(void **state) {
 static void law_is_objective_and_isotropic(void **state) {
     (void)state;
     sf_hyperfoam_card card = rich_card();
-    card.hysteresis_hu = 0.1;
-    card.hysteresis_alpha = 0.4;
+    card.shared.hysteresis_hu = 0.1;
+    card.shared.hysteresis_alpha = 0.4;
     sf_hyperfoam foam = sf_hyperfoam_build(&card);
     uint64_t seed = 3;
     for (int trial = 0; trial < 300; trial++) {
@@ -265,12 +265,12 @@ static void bounds_cover_the_numerical_tangent(void **state) {
     for (int c = 0; c < 5; c++)
         for (int variant = 0; variant < 3; variant++) {
             sf_hyperfoam_card card = c < 4 ? simple_card(6, nus[c]) : rich_card();
-            card.hysteresis_hu = variant ? 0.05 : 1;
-            card.hysteresis_shape = variant ? 1.4 : 1;
-            card.hysteresis_alpha = variant == 2 ? 0.35 : 1;
+            card.shared.hysteresis_hu = variant ? 0.05 : 1;
+            card.shared.hysteresis_shape = variant ? 1.4 : 1;
+            card.shared.hysteresis_alpha = variant == 2 ? 0.35 : 1;
             if (variant) {
-                card.maxwell_modulus = 2e6;
-                card.rate_factor = 0.4;
+                card.shared.maxwell_modulus = 2e6;
+                card.shared.rate_factor = 0.4;
             }
             sf_hyperfoam foam = sf_hyperfoam_build(&card);
             point_law law = law_of(&foam);
@@ -395,9 +395,9 @@ static void stored_and_lost_energy_is_the_work_done(void **state) {
     sf_foam foam;
     point_card_init(&hard);
     point_card_add_eva(&hard, 0, 60, 0.8, 1);
-    soft.hysteresis_hu = hard.card.hysteresis_hu = 0.1;
-    soft.hysteresis_shape = hard.card.hysteresis_shape = 1.3;
-    soft.hysteresis_alpha = hard.card.hysteresis_alpha = 0.3;
+    soft.shared.hysteresis_hu = hard.card.shared.hysteresis_hu = 0.1;
+    soft.shared.hysteresis_shape = hard.card.shared.hysteresis_shape = 1.3;
+    soft.shared.hysteresis_alpha = hard.card.shared.hysteresis_alpha = 0.3;
     foam_build(&hard, &foam);
     sf_hyperfoam hyper = sf_hyperfoam_build(&soft);
     const point_law laws[2] = {law_of(&hyper), {sf_low_density_foam.update, &foam, 0, false}};

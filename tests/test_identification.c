@@ -123,17 +123,17 @@ static void maxwell_stress_is_that_of_the_solver(void **state) {
     point_card_add_line(&line, 1e3, 0.9);
     sf_foam_card card = line.card;
     card.modulus = 1e3;
-    card.maxwell_rate = 0.7;
+    card.shared.maxwell_rate = 0.7;
     card.densification_exponent = 1;
     for (double rate = 0.01; rate < 20; rate *= 10) {
         sf_foam foam;
         const sf_material_law law = {.law = &sf_low_density_foam, .numbers = &foam};
         sf_error err = SF_ERROR_INIT;
-        card.maxwell_modulus = 0;
+        card.shared.maxwell_modulus = 0;
         assert_int_equal(sf_foam_build(&card, &foam, &err), SF_OK);
         sf_material_point_drive(&law, rate, 1e-4, N, strain, without);
         sf_foam_free(&foam);
-        card.maxwell_modulus = 5e4;
+        card.shared.maxwell_modulus = 5e4;
         assert_int_equal(sf_foam_build(&card, &foam, &err), SF_OK);
         sf_material_point_drive(&law, rate, 1e-4, N, strain, with);
         sf_foam_free(&foam);
@@ -354,16 +354,17 @@ static void written_material_is_the_card_of_the_fit(void **state) {
                                           "solver: { end_time = \"40 ms\"; };\n");
     if (sf_case_read(path, 1, overrides, NULL, &c, &err) != SF_OK)
         fail_msg("%s", err.text);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_count, card.curve_count);
-    assert_int_equal(sf_foam_card_of(&c.material)->curve_points, card.curve_points);
+    assert_int_equal(sf_foam_card_of(&c.material)->curves.curve_count, card.curves.curve_count);
+    assert_int_equal(sf_foam_card_of(&c.material)->curves.curve_points, card.curves.curve_points);
     assert_relative(sf_foam_card_of(&c.material)->modulus, card.modulus, 1e-10);
-    assert_relative(sf_foam_card_of(&c.material)->hysteresis_hu, card.hysteresis_hu, 1e-10);
-    assert_relative(sf_foam_card_of(&c.material)->hysteresis_shape, card.hysteresis_shape, 1e-10);
+    assert_relative(sf_foam_card_of(&c.material)->shared.hysteresis_hu, card.shared.hysteresis_hu, 1e-10);
+    assert_relative(sf_foam_card_of(&c.material)->shared.hysteresis_shape, card.shared.hysteresis_shape,
+                    1e-10);
     assert_relative(sf_foam_card_of(&c.material)->densification_start, card.densification_start, 1e-10);
     assert_relative(sf_foam_card_of(&c.material)->densification_exponent, card.densification_exponent, 1e-10);
-    for (int64_t k = 0; k < card.curve_points; k++)
-        assert_close(sf_foam_card_of(&c.material)->curve_stress[k], card.curve_stress[k],
-                     1e-9 * card.curve_stress[k]);
+    for (int64_t k = 0; k < card.curves.curve_points; k++)
+        assert_close(sf_foam_card_of(&c.material)->curves.curve_stress[k], card.curves.curve_stress[k],
+                     1e-9 * card.curves.curve_stress[k]);
     sf_case_free(&c);
     sf_foam_card_free(&card);
     sf_compression_fit_free(&fit);

@@ -108,7 +108,7 @@ static void compare_batches(sf_law_batch *a, sf_law_batch *b) {
 static void compare_law(point_card *card, double dt, uint64_t seed) {
     sf_foam foam;
     visits seen = {0};
-    bool special = card->card.curve_count == 1;
+    bool special = card->card.curves.curve_count == 1;
     foam_build(card, &foam);
     for (int trial = 0; trial < TRIALS; trial++) {
         sf_law_batch kernel, plain;
@@ -129,11 +129,11 @@ static void make_card(point_card *card) {
     point_card_init(card);
     point_card_add_eva(card, 1, 60, 0.8, 1);
     card->card.tension_cutoff = 6e4; /* from a stretch of 1.15 */
-    card->card.hysteresis_hu = 0.01;
-    card->card.hysteresis_shape = 1;
-    card->card.damp = 0.35;
-    card->card.maxwell_modulus = 3e6;
-    card->card.maxwell_rate = 5000;
+    card->card.shared.hysteresis_hu = 0.01;
+    card->card.shared.hysteresis_shape = 1;
+    card->card.shared.damp = 0.35;
+    card->card.shared.maxwell_modulus = 3e6;
+    card->card.shared.maxwell_rate = 5000;
 }
 
 static void foam_law_is_that_of_the_reference(void **state) {
@@ -142,8 +142,8 @@ static void foam_law_is_that_of_the_reference(void **state) {
     make_card(&card);
     compare_law(&card, 1e-5, 1);
     compare_law(&card, 0, 2);
-    card.card.hysteresis_shape = 2.7;
-    card.card.kelvin_viscosity = 50;
+    card.card.shared.hysteresis_shape = 2.7;
+    card.card.shared.kelvin_viscosity = 50;
     card.card.densification_limit = 1.05;
     card.card.densification_exponent = 1.4;
     compare_law(&card, 1e-5, 3);

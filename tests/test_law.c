@@ -220,20 +220,20 @@ static void add_material(sf_model *m, int64_t first, double factor, double hu) {
     list[0] = m->material[0];
     assert_int_equal(sf_material_create(list[0].law, &list[1], &err), SF_OK);
     sf_foam_card *two = sf_foam_card_of(&list[1]);
-    size_t points = (size_t)one->curve_points;
+    size_t points = (size_t)one->curves.curve_points;
     *two = *one;
-    two->curve_rate = malloc(sizeof(double));
-    two->curve_ptr = malloc(2 * sizeof(int64_t));
-    two->curve_strain = malloc(points * sizeof(double));
-    two->curve_stress = malloc(points * sizeof(double));
-    two->curve_rate[0] = one->curve_rate[0];
-    memcpy(two->curve_ptr, one->curve_ptr, 2 * sizeof(int64_t));
-    memcpy(two->curve_strain, one->curve_strain, points * sizeof(double));
+    two->curves.curve_rate = malloc(sizeof(double));
+    two->curves.curve_ptr = malloc(2 * sizeof(int64_t));
+    two->curves.curve_strain = malloc(points * sizeof(double));
+    two->curves.curve_stress = malloc(points * sizeof(double));
+    two->curves.curve_rate[0] = one->curves.curve_rate[0];
+    memcpy(two->curves.curve_ptr, one->curves.curve_ptr, 2 * sizeof(int64_t));
+    memcpy(two->curves.curve_strain, one->curves.curve_strain, points * sizeof(double));
     for (size_t k = 0; k < points; k++)
-        two->curve_stress[k] = factor * one->curve_stress[k];
+        two->curves.curve_stress[k] = factor * one->curves.curve_stress[k];
     two->modulus *= factor;
-    two->hysteresis_hu = hu;
-    two->maxwell_modulus = 0; /* other rows of history than the first's */
+    two->shared.hysteresis_hu = hu;
+    two->shared.maxwell_modulus = 0; /* other rows of history than the first's */
     free(m->material);
     m->material = list;
     m->material_count = 2;

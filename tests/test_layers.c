@@ -420,9 +420,9 @@ static void build_drop_on(int base, layering layer, int count, const double *fac
         for (int k = 0; k < count; k++) {
             sf_foam_card *card = sf_foam_card_of(&c.layer[k]);
             card->modulus *= factor[k];
-            card->density *= factor[k];
-            for (int64_t p = 0; p < card->curve_points; p++)
-                card->curve_stress[p] *= factor[k];
+            card->shared.density *= factor[k];
+            for (int64_t p = 0; p < card->curves.curve_points; p++)
+                card->curves.curve_stress[p] *= factor[k];
         }
         if (sliding)
             layers_join(&c, count - 1, count - 2, SF_INTERFACE_SLIDING, 0);

@@ -79,8 +79,8 @@ static void flat_curve_is_not_written(void **state) {
     fixture_case(&c, NULL);
     sf_foam_card *card = sf_foam_card_of(&c.material);
     card->densification_start = 0;
-    for (int64_t k = card->curve_points - 3; k < card->curve_points; k++)
-        card->curve_stress[k] = card->curve_stress[card->curve_points - 4];
+    for (int64_t k = card->curves.curve_points - 3; k < card->curves.curve_points; k++)
+        card->curves.curve_stress[k] = card->curves.curve_stress[card->curves.curve_points - 4];
     assert_int_equal(sf_material_write_checked(p->folder, "flat", &c.material, &TEXT, &err), SF_ERR_MODEL);
     assert_non_null(strstr(err.text, "the compression curve is flat"));
     assert_int_not_equal(program_shell(p, "ls flat.cfg").code, 0);

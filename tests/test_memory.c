@@ -32,7 +32,7 @@ static void make(foam_variant *v, int number, const sf_memory *memory) {
     point_card_init(&v->eva);
     point_card_add_eva(&v->eva, 0, 400, 0.9, 1);
     v->terms = (sf_hyperfoam_card){.term[0] = {.mu = 1e5, .alpha = 6, .nu = 0.2}};
-    v->terms.density = 35;
+    v->terms.shared.density = 35;
     sf_foam_shared *card = number < 2 ? &v->eva.card.shared : &v->terms.shared;
     card->hysteresis_hu = 0.05;
     card->hysteresis_shape = number % 2 ? 0.3 : 1;

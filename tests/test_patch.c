@@ -222,8 +222,8 @@ static void elastic_forces_are_the_gradient_of_the_stored_energy(void **state) {
     sf_foam_card card = *sf_foam_card_of(&m->material[0]);
     double coefficient = m->run.stabilisation;
     uint64_t seed = 11;
-    sf_foam_card_of(&m->material[0])->hysteresis_hu = 1;
-    sf_foam_card_of(&m->material[0])->damp = sf_foam_card_of(&m->material[0])->maxwell_modulus =
+    sf_foam_card_of(&m->material[0])->shared.hysteresis_hu = 1;
+    sf_foam_card_of(&m->material[0])->shared.damp = sf_foam_card_of(&m->material[0])->shared.maxwell_modulus =
         m->run.stabilisation = 0;
     fixture_start(f);
     sf_state *s = &f->state;

@@ -19,13 +19,13 @@ static void make_foam(double hu, double alpha, double maxwell, sf_foam *foam) {
     static point_card card;
     point_card_init(&card);
     point_card_add_eva(&card, 0, 60, 0.8, 1);
-    card.card.hysteresis_hu = hu;
-    card.card.hysteresis_alpha = alpha;
-    card.card.maxwell_modulus = maxwell;
-    card.card.maxwell_rate = 5000;
-    card.card.rate_factor = FACTOR;
-    card.card.rate_reference = REFERENCE;
-    card.card.rate_filter_time = TAU;
+    card.card.shared.hysteresis_hu = hu;
+    card.card.shared.hysteresis_alpha = alpha;
+    card.card.shared.maxwell_modulus = maxwell;
+    card.card.shared.maxwell_rate = 5000;
+    card.card.shared.rate_factor = FACTOR;
+    card.card.shared.rate_reference = REFERENCE;
+    card.card.shared.rate_filter_time = TAU;
     foam_build(&card, foam);
 }
 
@@ -199,9 +199,9 @@ static void curves_that_are_multiples_are_the_same_law(void **state) {
     point_card_init(&card);
     for (int k = 0; k < 3; k++)
         point_card_add_eva(&card, REFERENCE * pow(10, k), 60, 0.8, 1 + FACTOR * k);
-    card.card.hysteresis_hu = 0.1;
-    card.card.maxwell_modulus = 1e6;
-    card.card.maxwell_rate = 5000;
+    card.card.shared.hysteresis_hu = 0.1;
+    card.card.shared.maxwell_modulus = 1e6;
+    card.card.shared.maxwell_rate = 5000;
     foam_build(&card, &family);
     for (int trial = 0; trial < 500; trial++) {
         double old[9], f[9];
@@ -241,7 +241,8 @@ static void bounds_cover_the_numerical_tangent(void **state) {
         sf_foam foam;
         make_foam(variant ? 0.02 : 1, 1, variant == 2 ? 3e6 : 0, &foam);
         foam.modulus = variant == 3 ? 1e4 : foam.modulus;
-        const point_law law = {.update = update, .numbers = &foam, .maxwell = foam.maxwell, .away = true};
+        const point_law law = {
+            .update = update, .numbers = &foam, .maxwell = foam.options.maxwell, .away = true};
         for (int trial = 0; trial < 1000; trial++)
             point_law_assert_bounds(&law, &seed, 0.2, 1.2, 1e-6);
         sf_foam_free(&foam);
@@ -255,11 +256,11 @@ static void both_kinds_of_rate_are_refused(void **state) {
     point_card_init(&card);
     point_card_add_eva(&card, 1, 60, 0.8, 1);
     point_card_add_eva(&card, 100, 60, 0.8, 1.5);
-    card.card.maxwell_rate = 5000;
+    card.card.shared.maxwell_rate = 5000;
     sf_material m = sf_foam_material(&card.card);
     assert_int_equal(sf_material_check(&m, 0, &err), SF_OK);
-    card.card.rate_factor = 0.1;
-    card.card.rate_reference = 1;
+    card.card.shared.rate_factor = 0.1;
+    card.card.shared.rate_reference = 1;
     assert_int_equal(sf_material_check(&m, 0, &err), SF_ERR_MODEL);
     assert_non_null(strstr(err.text, "rate_factor is 0.1 and there are 2 curves"));
 }

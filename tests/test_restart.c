@@ -591,9 +591,9 @@ static void overflow_leaves_the_last_finite_state(void **state) {
     program_succeed(p, "pre", "'%s' -o absurd.h5 %s", fixture_source(EXAMPLE), program_coarse(20));
     assert_int_equal(sf_model_read(program_path(p, "absurd.h5"), &m, NULL, &err), SF_OK);
     sf_foam_card *card = m.material[0].card;
-    for (int64_t i = 0; i < card->curve_points; i++)
-        if (card->curve_strain[i] > 0.5)
-            card->curve_stress[i] = 1e300 * card->curve_strain[i];
+    for (int64_t i = 0; i < card->curves.curve_points; i++)
+        if (card->curves.curve_strain[i] > 0.5)
+            card->curves.curve_stress[i] = 1e300 * card->curves.curve_strain[i];
     assert_int_equal(sf_model_write(program_path(p, "absurd.h5"), &m, &provenance, &err), SF_OK);
     sf_model_free(&m);
     for (int kept = 0; kept < 2; kept++) {

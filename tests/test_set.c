@@ -27,7 +27,7 @@ static void make_block(const sf_memory *memory, fixture *f) {
     sf_case c;
     fixture_case(&c, NULL);
     fixture_hold(&c, SIDES);
-    sf_foam_card_of(&c.material)->memory = *memory;
+    sf_foam_card_of(&c.material)->shared.memory = *memory;
     fixture_under_plate(&c, &BLOCK, 0.1, 0.02, 0.02, f);
 }
 

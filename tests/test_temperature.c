@@ -57,13 +57,13 @@ static double factor_at(const program_place *p, const char *temperature) {
         fail_msg("%s", r.err);
     assert_int_equal(sf_model_read(program_path(p, "t.h5"), &m, NULL, &err), SF_OK);
     const sf_foam_card *card = sf_foam_card_of(&m.material[0]);
-    assert_int_equal(card->curve_count, 1);
-    assert_int_equal(card->curve_points, 5);
-    double factor = card->curve_stress[4] / 100e3;
+    assert_int_equal(card->curves.curve_count, 1);
+    assert_int_equal(card->curves.curve_points, 5);
+    double factor = card->curves.curve_stress[4] / 100e3;
     const double warm[] = {0, 10e3, 20e3, 40e3, 100e3};
-    assert_true(fabs(card->curve_strain[4] - 0.7) < 1e-12);
+    assert_true(fabs(card->curves.curve_strain[4] - 0.7) < 1e-12);
     for (int i = 0; i < 5; i++)
-        assert_true(fabs(card->curve_stress[i] - factor * warm[i]) < 1e-6);
+        assert_true(fabs(card->curves.curve_stress[i] - factor * warm[i]) < 1e-6);
     sf_model_free(&m);
     return factor;
 }
@@ -271,14 +271,14 @@ static void one_fit_has_a_curve_for_each_temperature(void **state) {
             cases[k].at);
         assert_int_equal(sf_model_read(program_path(p, "t.h5"), &m, NULL, &err), SF_OK);
         const sf_foam_card *card = sf_foam_card_of(&m.material[0]);
-        assert_int_equal(card->curve_count, 1);
-        assert_close(card->hysteresis_hu, 0.1, 0.01);
-        assert_close(card->hysteresis_shape, 2, 0.1);
+        assert_int_equal(card->curves.curve_count, 1);
+        assert_close(card->shared.hysteresis_hu, 0.1, 0.01);
+        assert_close(card->shared.hysteresis_shape, 2, 0.1);
         assert_close(card->modulus, 320e3, 30e3); /* of 23 degC; the others have 1.6 and 0.7 times that */
-        for (int64_t i = 1; i < card->curve_points; i++)
-            if (card->curve_strain[i] > 0.02 && card->curve_strain[i] < 0.69)
-                assert_relative(card->curve_stress[i],
-                                1e3 * stress_of(cases[k].factor, card->curve_strain[i]), 0.02);
+        for (int64_t i = 1; i < card->curves.curve_points; i++)
+            if (card->curves.curve_strain[i] > 0.02 && card->curves.curve_strain[i] < 0.69)
+                assert_relative(card->curves.curve_stress[i],
+                                1e3 * stress_of(cases[k].factor, card->curves.curve_strain[i]), 0.02);
         sf_model_free(&m);
     }
     expect(program_run(p, "pre",

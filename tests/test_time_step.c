@@ -148,13 +148,13 @@ static void make_hyperfoam(sf_case *c) {
     sf_material_free(&c->material);
     assert_int_equal(sf_material_create(&sf_hyperfoam_law, &c->material, &err), SF_OK);
     *(sf_hyperfoam_card *)c->material.card = (sf_hyperfoam_card){
-        .density = 35,
-        .hysteresis_hu = 1,
-        .hysteresis_shape = 1,
-        .hysteresis_alpha = 1,
-        .maxwell_rate = 5000,
-        .rate_reference = 0.01,
-        .rate_filter_time = 1e-4,
+        .shared.density = 35,
+        .shared.hysteresis_hu = 1,
+        .shared.hysteresis_shape = 1,
+        .shared.hysteresis_alpha = 1,
+        .shared.maxwell_rate = 5000,
+        .shared.rate_reference = 0.01,
+        .shared.rate_filter_time = 1e-4,
         .stable_to = 0.9,
         .term = {{.mu = 1.5e5, .alpha = 8, .nu = 0.25}, {.mu = 4e4, .alpha = -1.5, .beta = 0.2}}};
 }
@@ -267,7 +267,7 @@ static void chosen_step_is_stable_for_the_full_tangent(void **state) {
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         fixture f;
         start_block(&f, cases[k].linear, 0.1);
-        sf_foam_card_of(&f.model.material[0])->hysteresis_hu = cases[k].hu;
+        sf_foam_card_of(&f.model.material[0])->shared.hysteresis_hu = cases[k].hu;
         fixture_start(&f);
         deform(&f, cases[k].before);
         deform(&f, cases[k].now);
@@ -298,8 +298,8 @@ static void chosen_step_is_stable_for_the_hyperfoam(void **state) {
         fixture f;
         start_block_of(&f, false, true, 0.1);
         sf_hyperfoam_card *card = f.model.material[0].card;
-        card->hysteresis_hu = cases[k].hu;
-        card->hysteresis_alpha = cases[k].alpha;
+        card->shared.hysteresis_hu = cases[k].hu;
+        card->shared.hysteresis_alpha = cases[k].alpha;
         fixture_start(&f);
         deform(&f, cases[k].before);
         deform(&f, cases[k].now);

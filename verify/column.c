@@ -15,7 +15,8 @@ static double elastic_stress(const sf_foam_card *foam, double strain, double ene
         return foam->modulus * strain;
     double stress = sf_formula_stress(strain);
     if (energy < peak)
-        stress *= 1 - (1 - foam->hysteresis_hu) * (1 - pow(energy / peak, foam->hysteresis_shape));
+        stress *=
+            1 - (1 - foam->shared.hysteresis_hu) * (1 - pow(energy / peak, foam->shared.hysteresis_shape));
     return stress;
 }
 
@@ -48,7 +49,8 @@ static void derivative(const sf_column *c, const double y[STATES], double peak, 
     double strain = y[DEPTH] / c->height, rate = y[VELOCITY] / c->height;
     out[DEPTH] = y[VELOCITY];
     out[VELOCITY] = c->gravity - column_force(c, y, peak) / c->mass;
-    out[MAXWELL] = -c->foam->maxwell_rate * y[MAXWELL] - c->foam->maxwell_modulus * (1 - strain) * rate;
+    out[MAXWELL] =
+        -c->foam->shared.maxwell_rate * y[MAXWELL] - c->foam->shared.maxwell_modulus * (1 - strain) * rate;
     out[ENERGY] = (strain > 0 ? sf_formula_stress(strain) : c->foam->modulus * strain) * rate;
 }
 
@@ -93,17 +95,18 @@ static double advance(const sf_column *c, element *e, double strain, double deca
     if (e->energy >= e->peak)
         e->peak = e->energy;
     else
-        factor = 1 - (1 - foam->hysteresis_hu) * (1 - pow(e->energy / e->peak, foam->hysteresis_shape));
+        factor = 1 - (1 - foam->shared.hysteresis_hu) *
+                         (1 - pow(e->energy / e->peak, foam->shared.hysteresis_shape));
     return factor * loading - (1 - strain) * e->maxwell;
 }
 
 /* u: downward displacement of node k at (k + 1) h above the base; the top node moves with the missile. */
 static sf_status run_wave(const sf_column *c, int n, double dt, int stride, double *u, double *v, element *e,
                           sf_series *force, sf_error *err) {
-    double h = c->height / n, node = c->foam->density * c->area * h, top = c->mass + 0.5 * node;
-    double decay = exp(-c->foam->maxwell_rate * dt);
-    double gain =
-        c->foam->maxwell_modulus * -expm1(-c->foam->maxwell_rate * dt) / (c->foam->maxwell_rate * dt);
+    double h = c->height / n, node = c->foam->shared.density * c->area * h, top = c->mass + 0.5 * node;
+    double decay = exp(-c->foam->shared.maxwell_rate * dt);
+    double gain = c->foam->shared.maxwell_modulus * -expm1(-c->foam->shared.maxwell_rate * dt) /
+                  (c->foam->shared.maxwell_rate * dt);
     int64_t room = 0;
     v[n - 1] = c->speed * c->mass / top; /* what catching up the top node leaves */
     for (int64_t step = 0; (double)step * dt < LATEST; step++) {

@@ -56,23 +56,23 @@ double sf_formula_energy(double strain) {
 
 void sf_formula_table(sf_foam_card *card, int curves, const double *rate, const double *factor) {
     int64_t points = (int64_t)lround(DATA_END / DATA_STEP) + 1;
-    free(card->curve_rate);
-    free(card->curve_ptr);
-    free(card->curve_strain);
-    free(card->curve_stress);
-    card->curve_count = curves;
-    card->curve_points = curves * points;
-    card->curve_rate = calloc((size_t)curves, sizeof(double));
-    card->curve_ptr = calloc((size_t)curves + 1, sizeof(int64_t));
-    card->curve_strain = calloc((size_t)card->curve_points, sizeof(double));
-    card->curve_stress = calloc((size_t)card->curve_points, sizeof(double));
+    free(card->curves.curve_rate);
+    free(card->curves.curve_ptr);
+    free(card->curves.curve_strain);
+    free(card->curves.curve_stress);
+    card->curves.curve_count = curves;
+    card->curves.curve_points = curves * points;
+    card->curves.curve_rate = calloc((size_t)curves, sizeof(double));
+    card->curves.curve_ptr = calloc((size_t)curves + 1, sizeof(int64_t));
+    card->curves.curve_strain = calloc((size_t)card->curves.curve_points, sizeof(double));
+    card->curves.curve_stress = calloc((size_t)card->curves.curve_points, sizeof(double));
     for (int k = 0; k < curves; k++) {
-        card->curve_rate[k] = rate[k];
-        card->curve_ptr[k + 1] = (k + 1) * points;
+        card->curves.curve_rate[k] = rate[k];
+        card->curves.curve_ptr[k + 1] = (k + 1) * points;
         for (int64_t i = 0; i < points; i++) {
             double strain = (double)i * DATA_STEP;
-            card->curve_strain[k * points + i] = strain;
-            card->curve_stress[k * points + i] = factor[k] * formula(strain);
+            card->curves.curve_strain[k * points + i] = strain;
+            card->curves.curve_stress[k * points + i] = factor[k] * formula(strain);
         }
     }
     card->densification_start = card->densification_exponent = 0;

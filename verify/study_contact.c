@@ -164,11 +164,11 @@ static void build_column(const sf_column *column, const fixture_block *block, fi
     fixture_make_elastic(&c);
     fixture_hold(&c, (const char *const[]){"base", NULL});
     sf_formula_table(sf_foam_card_of(&c.material), 1, &still, &one);
-    sf_foam_card_of(&c.material)->density = column->foam->density;
-    sf_foam_card_of(&c.material)->hysteresis_hu = column->foam->hysteresis_hu;
-    sf_foam_card_of(&c.material)->hysteresis_shape = column->foam->hysteresis_shape;
-    sf_foam_card_of(&c.material)->maxwell_modulus = column->foam->maxwell_modulus;
-    sf_foam_card_of(&c.material)->maxwell_rate = column->foam->maxwell_rate;
+    sf_foam_card_of(&c.material)->shared.density = column->foam->shared.density;
+    sf_foam_card_of(&c.material)->shared.hysteresis_hu = column->foam->shared.hysteresis_hu;
+    sf_foam_card_of(&c.material)->shared.hysteresis_shape = column->foam->shared.hysteresis_shape;
+    sf_foam_card_of(&c.material)->shared.maxwell_modulus = column->foam->shared.maxwell_modulus;
+    sf_foam_card_of(&c.material)->shared.maxwell_rate = column->foam->shared.maxwell_rate;
     c.missile_card.mass = column->mass;
     c.missile_card.speed = column->speed;
     c.missile_card.gravity = column->gravity;
@@ -272,15 +272,15 @@ static void one_column(sf_study *s, const sf_column *column, const fixture_block
 
 static void plate_study(sf_study *s) {
     sf_error err = SF_ERROR_INIT;
-    sf_foam_card light = {.density = 0.35,
+    sf_foam_card light = {.shared.density = 0.35,
                           .modulus = 0.4136e6,
-                          .hysteresis_hu = 0.01,
-                          .hysteresis_shape = 1,
-                          .hysteresis_alpha = 1,
-                          .maxwell_rate = 5000};
+                          .shared.hysteresis_hu = 0.01,
+                          .shared.hysteresis_shape = 1,
+                          .shared.hysteresis_alpha = 1,
+                          .shared.maxwell_rate = 5000};
     sf_foam_card heavy = light;
-    heavy.density = 35;
-    heavy.maxwell_modulus = 3.43e6;
+    heavy.shared.density = 35;
+    heavy.shared.maxwell_modulus = 3.43e6;
     sf_column column = {.height = 0.05, .speed = 4.5, .gravity = SF_STANDARD_GRAVITY, .foam = &light};
     sf_series reference;
     FILE *data = sf_study_file(s, "plate.txt");

@@ -29,11 +29,11 @@ static const char *const path_names[PATHS] = {"uniaxial, sides free", "biaxial, 
                                               "confined", "simple shear at 30 % compression"};
 
 static sf_hyperfoam make_law(const sf_ogden *law) {
-    sf_hyperfoam_card card = {.density = 35,
-                              .hysteresis_hu = 1,
-                              .hysteresis_shape = 1,
-                              .hysteresis_alpha = 1,
-                              .maxwell_rate = 5000};
+    sf_hyperfoam_card card = {.shared.density = 35,
+                              .shared.hysteresis_hu = 1,
+                              .shared.hysteresis_shape = 1,
+                              .shared.hysteresis_alpha = 1,
+                              .shared.maxwell_rate = 5000};
     for (int k = 0; k < SF_OGDEN_TERMS; k++)
         card.term[k] = (sf_hyperfoam_term){.mu = law->mu[k], .alpha = law->alpha[k], .nu = law->nu[k]};
     return sf_hyperfoam_build(&card);

@@ -51,29 +51,30 @@ typedef struct laboratory {
 } laboratory;
 
 static void fill_card(const truth *t, sf_foam_card *card) {
-    *card = (sf_foam_card){.density = 35,
+    *card = (sf_foam_card){.shared.density = 35,
                            .modulus = t->stiffness,
-                           .hysteresis_hu = t->hu,
-                           .hysteresis_shape = t->shape,
-                           .hysteresis_alpha = 1,
-                           .maxwell_modulus = t->ed,
-                           .maxwell_rate = t->ed > 0 ? t->beta : 5000,
+                           .shared.hysteresis_hu = t->hu,
+                           .shared.hysteresis_shape = t->shape,
+                           .shared.hysteresis_alpha = 1,
+                           .shared.maxwell_modulus = t->ed,
+                           .shared.maxwell_rate = t->ed > 0 ? t->beta : 5000,
                            .tension_cutoff = 1e30,
                            .densification_limit = 1,
-                           .rate_filter_time = 1e-4,
-                           .curve_count = t->log_rate > 0 ? TESTS : 1};
-    card->curve_points = card->curve_count * TABLE;
-    card->curve_rate = calloc(TESTS, sizeof(double));
-    card->curve_ptr = calloc(TESTS + 1, sizeof(int64_t));
-    card->curve_strain = calloc(TESTS * TABLE, sizeof(double));
-    card->curve_stress = calloc(TESTS * TABLE, sizeof(double));
-    for (int r = 0; r < card->curve_count; r++) {
-        card->curve_rate[r] = RATE[r];
-        card->curve_ptr[r + 1] = (int64_t)(r + 1) * TABLE;
+                           .shared.rate_filter_time = 1e-4,
+                           .curves.curve_count = t->log_rate > 0 ? TESTS : 1};
+    card->curves.curve_points = card->curves.curve_count * TABLE;
+    card->curves.curve_rate = calloc(TESTS, sizeof(double));
+    card->curves.curve_ptr = calloc(TESTS + 1, sizeof(int64_t));
+    card->curves.curve_strain = calloc(TESTS * TABLE, sizeof(double));
+    card->curves.curve_stress = calloc(TESTS * TABLE, sizeof(double));
+    for (int r = 0; r < card->curves.curve_count; r++) {
+        card->curves.curve_rate[r] = RATE[r];
+        card->curves.curve_ptr[r + 1] = (int64_t)(r + 1) * TABLE;
         for (int k = 0; k < TABLE; k++) {
             double e = (TURN + 0.01) * k / (TABLE - 1);
-            card->curve_strain[r * TABLE + k] = e;
-            card->curve_stress[r * TABLE + k] = (1 + t->log_rate * log(RATE[r] / RATE[0])) * curve(t, e);
+            card->curves.curve_strain[r * TABLE + k] = e;
+            card->curves.curve_stress[r * TABLE + k] =
+                (1 + t->log_rate * log(RATE[r] / RATE[0])) * curve(t, e);
         }
     }
 }

@@ -63,14 +63,14 @@ static void build_cube(const sf_foam_card *card, int curves, const double *rates
     c.sliding_count = 1;
     snprintf(c.sliding_group[0], SF_CASE_NAME_SIZE, "base");
     sf_formula_table(sf_foam_card_of(&c.material), curves, rates, factors);
-    sf_foam_card_of(&c.material)->hysteresis_hu = card->hysteresis_hu;
-    sf_foam_card_of(&c.material)->hysteresis_shape = card->hysteresis_shape;
-    sf_foam_card_of(&c.material)->maxwell_modulus = card->maxwell_modulus;
-    sf_foam_card_of(&c.material)->maxwell_rate = card->maxwell_rate;
-    sf_foam_card_of(&c.material)->kelvin_viscosity = card->kelvin_viscosity;
-    sf_foam_card_of(&c.material)->damp = card->damp;
-    sf_foam_card_of(&c.material)->damp_length = card->damp_length;
-    sf_foam_card_of(&c.material)->rate_filter_time = card->rate_filter_time;
+    sf_foam_card_of(&c.material)->shared.hysteresis_hu = card->shared.hysteresis_hu;
+    sf_foam_card_of(&c.material)->shared.hysteresis_shape = card->shared.hysteresis_shape;
+    sf_foam_card_of(&c.material)->shared.maxwell_modulus = card->shared.maxwell_modulus;
+    sf_foam_card_of(&c.material)->shared.maxwell_rate = card->shared.maxwell_rate;
+    sf_foam_card_of(&c.material)->shared.kelvin_viscosity = card->shared.kelvin_viscosity;
+    sf_foam_card_of(&c.material)->shared.damp = card->shared.damp;
+    sf_foam_card_of(&c.material)->shared.damp_length = card->shared.damp_length;
+    sf_foam_card_of(&c.material)->shared.rate_filter_time = card->shared.rate_filter_time;
     c.missile_card.mass = 1e6;
     c.missile_card.speed = rate * SIDE;
     c.missile_card.gravity = 0;
@@ -174,9 +174,9 @@ static outcome press(fixture *f, const pressing *program, stress_law *law, FILE 
 static double hysteretic(const sf_foam_card *card, place *p, double *memory) {
     (void)memory;
     double stress = sf_formula_stress(p->strain);
-    if (card->hysteresis_hu < 1 && p->strain < p->largest_strain) {
+    if (card->shared.hysteresis_hu < 1 && p->strain < p->largest_strain) {
         double part = sf_formula_energy(p->strain) / sf_formula_energy(p->largest_strain);
-        stress *= 1 - (1 - card->hysteresis_hu) * (1 - pow(part, card->hysteresis_shape));
+        stress *= 1 - (1 - card->shared.hysteresis_hu) * (1 - pow(part, card->shared.hysteresis_shape));
     }
     return p->size = stress;
 }
@@ -184,10 +184,10 @@ static double hysteretic(const sf_foam_card *card, place *p, double *memory) {
 /* Maxwell stress after the leg so far, from what it held at its begin: the convolution integral of E' =
  * lambda lambda' for a constant rate of the stretch. memory[0]: S at the leg's begin; memory[1]: S now. */
 static double with_maxwell(const sf_foam_card *card, place *p, double *memory) {
-    double b = card->maxwell_rate, t = p->time - p->leg_time, v = p->velocity, from = p->leg_stretch,
+    double b = card->shared.maxwell_rate, t = p->time - p->leg_time, v = p->velocity, from = p->leg_stretch,
            now = from + v * t;
     memory[1] = memory[0] * exp(-b * t) +
-                card->maxwell_modulus * v / b * (now - v / b - exp(-b * t) * (from - v / b));
+                card->shared.maxwell_modulus * v / b * (now - v / b - exp(-b * t) * (from - v / b));
     double stress = hysteretic(card, p, memory);
     p->size += fabs(now * memory[1]);
     return stress - now * memory[1];
@@ -198,8 +198,8 @@ static double with_maxwell(const sf_foam_card *card, place *p, double *memory) {
 static double with_viscosity(const sf_foam_card *card, place *p, double *memory) {
     double stretch = 1 - p->strain,
            g = fmax(fmax(card->modulus, sf_formula_slope(0)), sf_formula_slope(p->strain));
-    double damp = card->damp * card->damp_length * sqrt(g * card->density);
-    double viscous = (card->kelvin_viscosity * stretch * stretch + damp) * p->velocity;
+    double damp = card->shared.damp * card->shared.damp_length * sqrt(g * card->shared.density);
+    double viscous = (card->shared.kelvin_viscosity * stretch * stretch + damp) * p->velocity;
     double stress = hysteretic(card, p, memory);
     p->size += fabs(viscous);
     return stress - (p->time > 0 ? viscous : 0);
@@ -210,7 +210,7 @@ static const double CURVE_RATE[3] = {20, 100, 500}, CURVE_FACTOR[3] = {1, 1.25, 
 /* Curves at several rates, each a multiple of the slowest: the factor is piecewise linear in ln r behind the
  * filter. */
 static double with_rates(const sf_foam_card *card, place *p, double *memory) {
-    double r = -p->velocity * -expm1(-p->time / card->rate_filter_time), factor = CURVE_FACTOR[0];
+    double r = -p->velocity * -expm1(-p->time / card->shared.rate_filter_time), factor = CURVE_FACTOR[0];
     (void)memory;
     for (int k = 0; k < 2; k++)
         if (r > CURVE_RATE[k])
@@ -231,11 +231,11 @@ static double in_tension(const sf_foam_card *card, place *p, double *memory) {
 /* ---- studies ---- */
 
 static const double ONE = 1, STILL = 0;
-static const sf_foam_card ELASTIC = {.hysteresis_hu = 1,
-                                     .hysteresis_shape = 1,
-                                     .hysteresis_alpha = 1,
-                                     .maxwell_rate = 5000,
-                                     .rate_filter_time = 1e-4,
+static const sf_foam_card ELASTIC = {.shared.hysteresis_hu = 1,
+                                     .shared.hysteresis_shape = 1,
+                                     .shared.hysteresis_alpha = 1,
+                                     .shared.maxwell_rate = 5000,
+                                     .shared.rate_filter_time = 1e-4,
                                      .tension_cutoff = 1e30};
 
 static void check_outcome(sf_study *s, const outcome *o, const char *what) {
@@ -249,7 +249,7 @@ static void loading_and_unloading(sf_study *s, FILE *data) {
     static const double cases[][2] = {{0.01, 1}, {0.1, 2}, {0.3, 0.5}, {1, 1}};
     fixture f;
     sf_foam_card card = ELASTIC;
-    card.hysteresis_hu = 0.01;
+    card.shared.hysteresis_hu = 0.01;
     const pressing back = {100, 2, {0.9, 0.001}}, again = {100, 4, {0.7, 0.2, 0.9, 0.3}};
     build_cube(&card, 1, &STILL, &ONE, back.rate, &f);
     outcome o = press(&f, &back, hysteretic, data);
@@ -262,8 +262,8 @@ static void loading_and_unloading(sf_study *s, FILE *data) {
                    "reloading against unloading, relative difference of the plate's force");
     fixture_free(&f);
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-        card.hysteresis_hu = cases[k][0];
-        card.hysteresis_shape = cases[k][1];
+        card.shared.hysteresis_hu = cases[k][0];
+        card.shared.hysteresis_shape = cases[k][1];
         build_cube(&card, 1, &STILL, &ONE, back.rate, &f);
         o = press(&f, &back, hysteretic, NULL);
         double expected = cases[k][0] + (1 - cases[k][0]) / (1 + cases[k][1]);
@@ -279,11 +279,11 @@ static void viscous_terms(sf_study *s, FILE *data) {
     char what[64];
     fixture f;
     sf_foam_card maxwell = ELASTIC, viscous = ELASTIC;
-    maxwell.hysteresis_hu = 0.01;
-    maxwell.maxwell_modulus = 3.43e6;
-    viscous.kelvin_viscosity = 100;
-    viscous.damp = 0.35;
-    viscous.damp_length = 0.005;
+    maxwell.shared.hysteresis_hu = 0.01;
+    maxwell.shared.maxwell_modulus = 3.43e6;
+    viscous.shared.kelvin_viscosity = 100;
+    viscous.shared.damp = 0.35;
+    viscous.shared.damp_length = 0.005;
     for (size_t k = 0; k < sizeof rates / sizeof rates[0]; k++) {
         const pressing back = {rates[k], 2, {0.9, 0.2}};
         build_cube(&maxwell, 1, &STILL, &ONE, rates[k], &f);

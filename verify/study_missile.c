@@ -127,7 +127,7 @@ static void start(const drop *d, fixture *f) {
     fixture_hold(&c, (const char *const[]){"base", NULL});
     if (d->hard) {
         fixture_make_linear(&c);
-        sf_foam_card_of(&c.material)->damp = 0.3;
+        sf_foam_card_of(&c.material)->shared.damp = 0.3;
     }
     c.missile_card.mass = d->mass;
     c.missile_card.speed = d->speed;

@@ -41,10 +41,10 @@ static void build(int cloud, int material, fixture *f) {
     fixture_case(&c, (const char *const[]){"geometry.parameters.fine_spacing=25.0",
                                            "geometry.parameters.outer_spacing=50.0", NULL});
     if (material < MAXWELL)
-        sf_foam_card_of(&c.material)->maxwell_modulus = 0;
-    sf_foam_card_of(&c.material)->kelvin_viscosity = material == VISCOUS ? 20 : 0;
+        sf_foam_card_of(&c.material)->shared.maxwell_modulus = 0;
+    sf_foam_card_of(&c.material)->shared.kelvin_viscosity = material == VISCOUS ? 20 : 0;
     if (material < VISCOUS)
-        sf_foam_card_of(&c.material)->damp = 0;
+        sf_foam_card_of(&c.material)->shared.damp = 0;
     c.run.step_limit = c.run.step_safety = 1;
     if (cloud == PAD) {
         fixture_geometry(&c, &mesh, &surface);
@@ -183,15 +183,15 @@ static double differentiate(const probe *p, double dt, gsl_matrix *k) {
 /* Stiffness and viscosity matrices: with the viscous terms off, and what they add. */
 static double assemble(const probe *p, gsl_matrix *k, gsl_matrix *c) {
     sf_foam *foam = p->f->operators.law[0].numbers;
-    double damp = foam->damp, kelvin = foam->kelvin;
-    foam->damp = foam->kelvin = 0;
+    double damp = foam->options.damp, kelvin = foam->options.kelvin;
+    foam->options.damp = foam->options.kelvin = 0;
     double skew = differentiate(p, INSTANT, k);
     gsl_matrix_set_zero(c);
     if (damp > 0 || kelvin > 0) {
         gsl_matrix *elastic = gsl_matrix_alloc(p->size, p->size);
         differentiate(p, PROBE_STEP, elastic);
-        foam->damp = damp;
-        foam->kelvin = kelvin;
+        foam->options.damp = damp;
+        foam->options.kelvin = kelvin;
         differentiate(p, PROBE_STEP, c);
         gsl_matrix_sub(c, elastic);
         gsl_matrix_scale(c, PROBE_STEP);
@@ -435,7 +435,8 @@ static void small_drop(sf_study *s) {
     build(PAD, VISCOUS, &f);
     build(PAD, VISCOUS, &twin);
     sf_state *st = &f.state;
-    ((sf_foam *)f.operators.law[0].numbers)->kelvin = ((sf_foam *)twin.operators.law[0].numbers)->kelvin = 0;
+    ((sf_foam *)f.operators.law[0].numbers)->options.kelvin =
+        ((sf_foam *)twin.operators.law[0].numbers)->options.kelvin = 0;
     gsl_matrix *k = gsl_matrix_alloc(3 * (size_t)f.model.node_count, 3 * (size_t)f.model.node_count);
     gsl_matrix *c = gsl_matrix_alloc(k->size1, k->size1);
     while (st->time < 20e-3 && sf_step_evaluate(&f.model, &f.operators, st, &err) == SF_OK) {

@@ -31,7 +31,7 @@ static void start_column(const int cells[3], double dt, fixture *f) {
 }
 
 static double wave_speed(const sf_model *m) {
-    return sqrt(sf_foam_card_of(&m->material[0])->modulus / sf_foam_card_of(&m->material[0])->density);
+    return sqrt(sf_foam_card_of(&m->material[0])->modulus / sf_foam_card_of(&m->material[0])->shared.density);
 }
 
 /* Largest time step that the program would take at rest. */

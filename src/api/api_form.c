@@ -39,7 +39,8 @@ static char *list_parameters(const sf_foam_form *form, sf_error *err) {
         sf_json json = {.file = out};
         SF_JSON_OBJECT(&json, NULL);
         SF_JSON_TEXTS(&json, {"curve", form->curve->name}, {"formula", form->curve->formula});
-        SF_JSON_NUMBERS(&json, {"density", form->base.density}, {"curves", (double)form->base.curve_count});
+        SF_JSON_NUMBERS(&json, {"density", form->base.shared.density},
+                        {"curves", (double)form->base.curves.curve_count});
         SF_JSON_ARRAY(&json, "parameters");
         for (int p = 0; p < SF_PARAMETER_COUNT; p++)
             put_parameter(&json, form, (sf_foam_parameter)p);
@@ -81,16 +82,16 @@ static softfall_status make_form(const char *material, double density, const cha
     sf_error err = SF_ERROR_INIT;
     *out = sf_alloc(&err, 1, sizeof **out, "a form");
     if (*out)
-        (*out)->form.base = (sf_foam_card){.density = density,
+        (*out)->form.base = (sf_foam_card){.shared = {.density = density,
+                                                      .hysteresis_hu = 1,
+                                                      .hysteresis_shape = 1,
+                                                      .hysteresis_alpha = 1,
+                                                      .maxwell_rate = 5000,
+                                                      .rate_filter_time = 1e-4,
+                                                      .memory = {.start = 1}},
                                            .modulus = USUAL_MODULUS,
-                                           .hysteresis_hu = 1,
-                                           .hysteresis_shape = 1,
-                                           .hysteresis_alpha = 1,
-                                           .maxwell_rate = 5000,
-                                           .rate_filter_time = 1e-4,
                                            .tension_cutoff = 1e30,
-                                           .densification_limit = 1,
-                                           .memory = {.start = 1}};
+                                           .densification_limit = 1};
     if (*out && read_form(material, curve, solid_density, *out, &err) != SF_OK) {
         softfall_form_free(*out);
         *out = NULL;
@@ -164,7 +165,7 @@ softfall_status softfall_form_material(const softfall_form *form, const double *
     if (sf_foam_form_card(&form->form, value, &card, &err) != SF_OK ||
         sf_foam_check_shared(&card, &err) != SF_OK)
         return softfall_return(&err, error);
-    card.informed_strain = informed;
+    card.shared.informed_strain = informed;
     const sf_material made = sf_foam_material(&card);
     *out = sf_material_handle(&made, &err);
     return softfall_return(&err, error);
@@ -187,11 +188,13 @@ softfall_status softfall_material_bend(softfall_material *material, int64_t coun
         SF_REFUSE(&err, "only curves of the law %s can be bent, at 1 strain or more", sf_low_density_foam.name);
     else
         sf_foam_card_resample(card, &err);
-    for (int64_t c = 0; err.status == SF_OK && c < card->curve_count; c++)
-        for (int64_t k = card->curve_ptr[c]; k < card->curve_ptr[c + 1]; k++) {
-            double before = k > card->curve_ptr[c] ? card->curve_stress[k - 1] * (1 + LEAST_RISE) : 0;
-            card->curve_stress[k] =
-                fmax(before, card->curve_stress[k] * exp(bend_at(count, strain, bend, card->curve_strain[k])));
+    for (int64_t c = 0; err.status == SF_OK && c < card->curves.curve_count; c++)
+        for (int64_t k = card->curves.curve_ptr[c]; k < card->curves.curve_ptr[c + 1]; k++) {
+            double before =
+                k > card->curves.curve_ptr[c] ? card->curves.curve_stress[k - 1] * (1 + LEAST_RISE) : 0;
+            card->curves.curve_stress[k] =
+                fmax(before, card->curves.curve_stress[k] *
+                                 exp(bend_at(count, strain, bend, card->curves.curve_strain[k])));
         }
     return softfall_return(&err, error);
 }

@@ -101,16 +101,16 @@ softfall_status softfall_compress_cycles(const softfall_material *material, cons
 softfall_status softfall_hyperfoam_material(const softfall_hyperfoam *values, softfall_material **out,
                                             softfall_error *error) {
     sf_error err = SF_ERROR_INIT;
-    sf_hyperfoam_card card = {.density = values->density,
-                              .damp = values->damp,
-                              .hysteresis_hu = values->hu,
-                              .hysteresis_shape = values->shape,
-                              .hysteresis_alpha = values->unloading_alpha,
-                              .maxwell_rate = 5000,
-                              .rate_reference = 0.01,
-                              .rate_filter_time = 1e-4,
+    sf_hyperfoam_card card = {.shared.density = values->density,
+                              .shared.damp = values->damp,
+                              .shared.hysteresis_hu = values->hu,
+                              .shared.hysteresis_shape = values->shape,
+                              .shared.hysteresis_alpha = values->unloading_alpha,
+                              .shared.maxwell_rate = 5000,
+                              .shared.rate_reference = 0.01,
+                              .shared.rate_filter_time = 1e-4,
                               .stable_to = 0.9,
-                              .informed_strain = values->informed};
+                              .shared.informed_strain = values->informed};
     for (int k = 0; k < values->terms && k < SF_HYPERFOAM_TERMS; k++)
         card.term[k] = (sf_hyperfoam_term){
             .mu = values->mu[k], .alpha = values->alpha[k], .nu = values->nu[k]};

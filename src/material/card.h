@@ -3,15 +3,6 @@
 #include "base/lanes.h"
 #include "base/units.h"
 
-/* Members of a struct, from a list, that are also a struct of their own: of the type, under the name. */
-#define SF_WITHIN(members, type, name)                                                                       \
-    union {                                                                                                  \
-        struct {                                                                                             \
-            members                                                                                          \
-        };                                                                                                   \
-        type name;                                                                                           \
-    }
-
 /* sf_law: a material law, as one constant entry of the table in material/laws.h (which says how to add
  * one). Its parameters are declared once, in `parameter`: that list drives the keys of the case file,
  * `softfall-pre --keys`, the check of a model, model.h5 and written material files. A card is the values of
@@ -53,16 +44,14 @@ typedef struct sf_parameter {
 
 /* Compression curves: `curve_count` of them, in ascending strain rate; points of curve k are [curve_ptr[k],
  * curve_ptr[k+1]). Strain and stress are engineering, positive in compression. Arrays from sf_alloc. A card
- * holds them as the members of SF_LAW_CURVES, at `curves`. */
-#define SF_LAW_CURVES                                                                                        \
-    int64_t curve_count;                                                                                     \
-    int64_t curve_points;                                                                                    \
-    double *curve_rate;   /* [curve_count] s-1 */                                                            \
-    int64_t *curve_ptr;   /* [curve_count + 1] */                                                            \
-    double *curve_strain; /* [curve_points] - */                                                             \
-    double *curve_stress; /* [curve_points] Pa */
+ * holds them as `curves`. */
 typedef struct sf_law_curves {
-    SF_LAW_CURVES
+    int64_t curve_count;
+    int64_t curve_points;
+    double *curve_rate;   /* [curve_count] s-1 */
+    int64_t *curve_ptr;   /* [curve_count + 1] */
+    double *curve_strain; /* [curve_points] - */
+    double *curve_stress; /* [curve_points] Pa */
 } sf_law_curves;
 
 /* A place where a curve lies below that of the next lower rate. */

@@ -150,8 +150,8 @@ static double build_pieces(double end_stress, double end_slope, sf_curve *curve)
 }
 
 sf_status sf_curve_build(const sf_foam_card *foam, int64_t index, sf_curve *curve, sf_error *err) {
-    int64_t first = foam->curve_ptr[index], count = foam->curve_ptr[index + 1] - first;
-    const double *x = &foam->curve_strain[first], *y = &foam->curve_stress[first];
+    int64_t first = foam->curves.curve_ptr[index], count = foam->curves.curve_ptr[index + 1] - first;
+    const double *x = &foam->curves.curve_strain[first], *y = &foam->curves.curve_stress[first];
     *curve = (sf_curve){0};
     SF_TRY(check_points(index, count, x, err));
     curve->start = foam->densification_start > 0 ? foam->densification_start : x[count - 1];

@@ -8,20 +8,18 @@
  * stress, work and bounds follow here (theory, section "Foam"). Pure functions on batches of SF_LANES
  * points; arrays are [component][lane]. Matrices are row-major (9) or symmetric (xx, yy, zz, xy, yz, xz). */
 
-/* Numbers of hysteresis and viscosity. A law's numbers hold them as the members of SF_FOAM_OPTIONS. */
-#define SF_FOAM_OPTIONS                                                                                      \
-    double density;                     /* kg m-3 */                                                         \
-    double hu, shape;                   /* - */                                                              \
-    double damp;                        /* - */                                                              \
-    double maxwell;                     /* Pa, ED */                                                         \
-    double maxwell_rate;                /* s-1, BETA1 */                                                     \
-    double kelvin;                      /* Pa s, eta */                                                      \
-    double rate_factor, rate_reference; /* -, s-1 */                                                         \
-    double filter_time;                 /* s */                                                              \
-    sf_unloading unloading;                                                                                  \
-    sf_memory memory;
+/* Numbers of hysteresis and viscosity. They are the first member of a law's numbers. */
 typedef struct sf_foam_options {
-    SF_FOAM_OPTIONS
+    double density;                     /* kg m-3 */
+    double hu, shape;                   /* - */
+    double damp;                        /* - */
+    double maxwell;                     /* Pa, ED */
+    double maxwell_rate;                /* s-1, BETA1 */
+    double kelvin;                      /* Pa s, eta */
+    double rate_factor, rate_reference; /* -, s-1 */
+    double filter_time;                 /* s */
+    sf_unloading unloading;
+    sf_memory memory;
 } sf_foam_options;
 
 sf_foam_options sf_foam_options_build(const sf_foam_shared *card);
@@ -81,7 +79,7 @@ typedef struct sf_foam_kind {
 void sf_foam_point_update(const sf_foam_options *options, const sf_foam_kind *kind, double dt,
                           sf_law_batch *batch);
 
-/* sf_law.rest of numbers that begin with SF_FOAM_OPTIONS: memory, and what viscous stresses a rest of `pause`
+/* sf_law.rest of numbers that begin with sf_foam_options: memory, and what viscous stresses a rest of `pause`
  * (s) leaves. */
 void sf_foam_point_rest(const void *numbers, double pause, double (*history)[SF_LANES]);
 
@@ -91,9 +89,9 @@ double sf_foam_point_softening(const void *numbers, double (*history)[SF_LANES],
 /* The members of sf_law that foam laws have in common; they name functions and lists of the law's file. */
 #define SF_FOAM_LAW(card)                                                                                    \
     .card_size = sizeof(card), .parameter = parameters,                                                      \
-    .parameter_count = sizeof parameters / sizeof parameters[0], .density = offsetof(card, density),         \
-    .length = offsetof(card, damp_length), .rest_modulus = rest_modulus, .check = check,                     \
-    .check_keys = check_keys, .data_end = data_end, .informed = offsetof(card, informed_strain),             \
+    .parameter_count = sizeof parameters / sizeof parameters[0], .density = offsetof(card, shared.density),  \
+    .length = offsetof(card, shared.damp_length), .rest_modulus = rest_modulus, .check = check,              \
+    .check_keys = check_keys, .data_end = data_end, .informed = offsetof(card, shared.informed_strain),      \
     .rest_bounds = rest_bounds, .history = history, .history_count = sizeof history / sizeof history[0],     \
     .build = build, .energy = energy, .shift = sf_foam_shift, .rest = sf_foam_point_rest,                    \
     .softening = sf_foam_point_softening

@@ -164,8 +164,9 @@ static void rest_bounds(const void *card, double length, double *tangent, double
     const double still[3] = {1, 1, 1};
     sf_hyperfoam law = sf_hyperfoam_build(card);
     sf_hyperfoam_point p = sf_hyperfoam_evaluate(&law, still);
-    *tangent = p.slope[0][0] + 2 * fabs(p.slope[0][1]) + foam->maxwell_modulus;
-    *viscosity = foam->kelvin_viscosity + foam->damp * length * sqrt(foam->density * law.rest);
+    *tangent = p.slope[0][0] + 2 * fabs(p.slope[0][1]) + foam->shared.maxwell_modulus;
+    *viscosity =
+        foam->shared.kelvin_viscosity + foam->shared.damp * length * sqrt(foam->shared.density * law.rest);
 }
 
 /* ---- points ---- */

@@ -17,17 +17,19 @@ typedef struct sf_hyperfoam_term {
 } sf_hyperfoam_term;
 
 typedef struct sf_hyperfoam_card {
-    SF_WITHIN(SF_FOAM_SHARED, sf_foam_shared, shared);
+    sf_foam_shared shared;
     double stable_to; /* -, strain up to which the terms must be stable */
     sf_hyperfoam_term term[SF_HYPERFOAM_TERMS];
 } sf_hyperfoam_card;
+_Static_assert(offsetof(sf_hyperfoam_card, shared) == 0, "a foam's card begins with sf_foam_shared");
 
 typedef struct sf_hyperfoam {
-    SF_WITHIN(SF_FOAM_OPTIONS, sf_foam_options, options);
+    sf_foam_options options;
     double rest; /* Pa, modulus of confined compression at rest */
     int count;
     double mu[SF_HYPERFOAM_TERMS], alpha[SF_HYPERFOAM_TERMS], beta[SF_HYPERFOAM_TERMS];
 } sf_hyperfoam;
+_Static_assert(offsetof(sf_hyperfoam, options) == 0, "a foam's numbers begin with sf_foam_options");
 
 /* The law's entry in the table. */
 extern const sf_law sf_hyperfoam_law;

@@ -6,12 +6,12 @@ sf_status sf_foam_build(const sf_foam_card *card, sf_foam *foam, sf_error *err) 
         .options = sf_foam_options_build(&card->shared),
         .modulus = card->modulus,
         .cutoff = card->tension_cutoff,
-        .curve_count = card->curve_count,
+        .curve_count = card->curves.curve_count,
     };
-    foam->curve = sf_alloc(err, card->curve_count, sizeof *foam->curve, "curves");
-    foam->curve_rate = sf_alloc(err, card->curve_count, sizeof *foam->curve_rate, "curves");
-    for (int64_t k = 0; k < card->curve_count && err->status == SF_OK; k++) {
-        foam->curve_rate[k] = card->curve_rate[k];
+    foam->curve = sf_alloc(err, card->curves.curve_count, sizeof *foam->curve, "curves");
+    foam->curve_rate = sf_alloc(err, card->curves.curve_count, sizeof *foam->curve_rate, "curves");
+    for (int64_t k = 0; k < card->curves.curve_count && err->status == SF_OK; k++) {
+        foam->curve_rate[k] = card->curves.curve_rate[k];
         sf_curve_build(card, k, &foam->curve[k], err);
     }
     if (err->status != SF_OK)
@@ -117,7 +117,7 @@ static double add_overstress(const sf_foam *foam, const sf_law_batch *b, int l, 
         if (fabs(gap) > 1e-7)
             bound = fmax(bound, (extra[i] - extra[(i + 1) % 3]) / gap);
     }
-    return bound + sqrt(rates) / foam->filter_time;
+    return bound + sqrt(rates) / foam->options.filter_time;
 }
 
 static void overstress(const void *numbers, double dt, sf_law_batch *b, const sf_foam_loading *law,
@@ -172,7 +172,7 @@ static bool has_cutoff(const void *card) {
     return ((const sf_foam_card *)card)->tension_cutoff != NO_CUTOFF;
 }
 static bool has_rates(const void *card) {
-    return ((const sf_foam_card *)card)->curve_count > 1 || sf_foam_has_rate_factor(card);
+    return ((const sf_foam_card *)card)->curves.curve_count > 1 || sf_foam_has_rate_factor(card);
 }
 static bool has_limit(const void *card) {
     return ((const sf_foam_card *)card)->densification_limit < 1;
@@ -222,9 +222,9 @@ static sf_status check_densification(const sf_foam_card *foam, const sf_given *g
                                      sf_error *err) {
     double end = 1.0; /* the law takes over from every curve, so the shortest table bounds it */
     double largest = 0.0;
-    for (int64_t k = 0; k < foam->curve_count; k++) {
-        end = fmin(end, foam->curve_strain[foam->curve_ptr[k + 1] - 1]);
-        largest = fmax(largest, foam->curve_strain[foam->curve_ptr[k + 1] - 1]);
+    for (int64_t k = 0; k < foam->curves.curve_count; k++) {
+        end = fmin(end, foam->curves.curve_strain[foam->curves.curve_ptr[k + 1] - 1]);
+        largest = fmax(largest, foam->curves.curve_strain[foam->curves.curve_ptr[k + 1] - 1]);
     }
     *place = "material.densification.start";
     if (foam->densification_start > end)
@@ -257,21 +257,21 @@ static sf_status check_densification(const sf_foam_card *foam, const sf_given *g
 static sf_status check(const void *card, sf_error *err) {
     const sf_foam_card *foam = card;
     SF_TRY(sf_foam_check_shared(card, err));
-    if (foam->rate_factor > 0 && foam->curve_count > 1)
+    if (foam->shared.rate_factor > 0 && foam->curves.curve_count > 1)
         return SF_FAIL(err, SF_ERR_MODEL,
                        "rate_factor is %g and there are %lld curves at several rates; a foam has one or the "
                        "other",
-                       foam->rate_factor, (long long)foam->curve_count);
+                       foam->shared.rate_factor, (long long)foam->curves.curve_count);
     return SF_OK;
 }
 
 static sf_status check_keys(const void *card, const sf_given *given, const char **place, sf_error *err) {
     const sf_foam_card *foam = card;
-    if (foam->curve_count == 0)
+    if (foam->curves.curve_count == 0)
         return refuse(
             err, place, "material",
             "material.curve is missing: the compression curve's CSV file (or curves: several of them)");
-    SF_TRY(sf_foam_check_shared_keys(&foam->shared, foam->curve_count > 1, given, place, err));
+    SF_TRY(sf_foam_check_shared_keys(&foam->shared, foam->curves.curve_count > 1, given, place, err));
     sf_error inner = SF_ERROR_INIT;
     *place = "material.rate_factor";
     if (check(foam, &inner) != SF_OK)
@@ -282,8 +282,8 @@ static sf_status check_keys(const void *card, const sf_given *given, const char 
 static double data_end(const void *card) {
     const sf_foam_card *foam = card;
     double end = 1;
-    for (int64_t k = 0; k < foam->curve_count; k++)
-        end = fmin(end, foam->curve_strain[foam->curve_ptr[k + 1] - 1]);
+    for (int64_t k = 0; k < foam->curves.curve_count; k++)
+        end = fmin(end, foam->curves.curve_strain[foam->curves.curve_ptr[k + 1] - 1]);
     return foam->densification_start > 0 ? fmin(end, foam->densification_start) : end;
 }
 
@@ -300,12 +300,13 @@ static double rest_modulus(const void *card) {
 static void rest_bounds(const void *card, double length, double *tangent, double *viscosity) {
     const sf_foam_card *foam = card;
     double slope = foam->modulus;
-    for (int64_t k = 0; k < foam->curve_count; k++) {
-        int64_t first = foam->curve_ptr[k];
-        slope = fmax(slope, foam->curve_stress[first + 1] / foam->curve_strain[first + 1]);
+    for (int64_t k = 0; k < foam->curves.curve_count; k++) {
+        int64_t first = foam->curves.curve_ptr[k];
+        slope = fmax(slope, foam->curves.curve_stress[first + 1] / foam->curves.curve_strain[first + 1]);
     }
-    *tangent = slope + foam->maxwell_modulus;
-    *viscosity = foam->kelvin_viscosity + foam->damp * length * sqrt(foam->density * slope);
+    *tangent = slope + foam->shared.maxwell_modulus;
+    *viscosity =
+        foam->shared.kelvin_viscosity + foam->shared.damp * length * sqrt(foam->shared.density * slope);
 }
 
 /* ---- points ---- */

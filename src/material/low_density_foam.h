@@ -7,13 +7,14 @@
  * the compression curve, rate-dependent loading curves; the rest is shared (foam_point.h). Pure functions. */
 
 typedef struct sf_foam {
-    SF_WITHIN(SF_FOAM_OPTIONS, sf_foam_options, options);
+    sf_foam_options options;
     double modulus; /* Pa, E */
     double cutoff;  /* Pa */
     int64_t curve_count;
     double *curve_rate; /* [curve_count] s-1, owned */
     sf_curve *curve;    /* [curve_count] owned */
 } sf_foam;
+_Static_assert(offsetof(sf_foam, options) == 0, "a foam's numbers begin with sf_foam_options");
 
 /* The foam's entry in the table of laws (low_density_foam.c). */
 extern const sf_law sf_low_density_foam;

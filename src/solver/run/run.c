@@ -57,8 +57,8 @@ static double straight_strain(const sf_model *m) {
         if (strcmp(law, sf_low_density_foam.name) != 0)
             continue;
         const sf_foam_card *card = sf_foam_card_of(&m->material[k]);
-        for (int64_t c = 0; c < card->curve_count && sf_curve_build(card, c, &curve, &ignored) == SF_OK;
-             c++) {
+        for (int64_t c = 0;
+             c < card->curves.curve_count && sf_curve_build(card, c, &curve, &ignored) == SF_OK; c++) {
             least = fmin(least, curve.straight.start);
             sf_curve_free(&curve);
         }

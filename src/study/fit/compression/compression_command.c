@@ -44,11 +44,11 @@ static double compare_card(const sf_compression_fit *fit, const sf_foam_card *wh
         int64_t ptr[2] = {0, fit->table_count};
         sf_foam_card card = *whole;
         if (d->config->thermal) {
-            card.curve_points = fit->table_count;
-            card.curve_count = 1;
-            card.curve_ptr = ptr;
-            card.curve_strain += whole->curve_ptr[k];
-            card.curve_stress += whole->curve_ptr[k];
+            card.curves.curve_points = fit->table_count;
+            card.curves.curve_count = 1;
+            card.curves.curve_ptr = ptr;
+            card.curves.curve_strain += whole->curves.curve_ptr[k];
+            card.curves.curve_stress += whole->curves.curve_ptr[k];
         }
         const sf_material material = sf_foam_material(&card);
         SF_OWNED_BY(sf_material_law_free) sf_material_law law = {0};

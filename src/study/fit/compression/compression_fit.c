@@ -548,32 +548,32 @@ sf_status sf_compression_card(const sf_compression_fit *fit, sf_foam_card *card,
     bool maxwell = e[SF_ESTIMATE_ED].present;
     /* curves of their own each have an exponent of their own where A = 0: the solver finds them (0) */
     bool own = fit->model.form.rule == SF_H1_AUTO && fit->model.form.rate == SF_RATE_CURVES;
-    *card =
-        (sf_foam_card){.density = c->density,
-                       .modulus = e[SF_ESTIMATE_E].value,
-                       .hysteresis_hu = e[SF_ESTIMATE_HU].value,
-                       .hysteresis_shape = e[SF_ESTIMATE_SHAPE].value,
-                       .hysteresis_alpha = e[SF_ESTIMATE_ALPHA].present ? e[SF_ESTIMATE_ALPHA].value : 1,
-                       .damp = c->damp,
-                       .maxwell_modulus = maxwell ? e[SF_ESTIMATE_ED].value : 0,
-                       .maxwell_rate = maxwell ? e[SF_ESTIMATE_BETA1].value : 5000,
-                       .rate_filter_time = 1e-4,
-                       .tension_cutoff = 1e30,
-                       .densification_rule = e[SF_ESTIMATE_LIMIT].present && e[SF_ESTIMATE_LIMIT].value < 1
-                                                 ? SF_DENSIFICATION_H2
-                                                 : SF_DENSIFICATION_H1,
-                       .densification_start = fit->data.start,
-                       .densification_limit = e[SF_ESTIMATE_LIMIT].present ? e[SF_ESTIMATE_LIMIT].value : 1,
-                       .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value};
-    card->informed_strain = fit->data.end;
+    *card = (sf_foam_card){
+        .shared.density = c->density,
+        .modulus = e[SF_ESTIMATE_E].value,
+        .shared.hysteresis_hu = e[SF_ESTIMATE_HU].value,
+        .shared.hysteresis_shape = e[SF_ESTIMATE_SHAPE].value,
+        .shared.hysteresis_alpha = e[SF_ESTIMATE_ALPHA].present ? e[SF_ESTIMATE_ALPHA].value : 1,
+        .shared.damp = c->damp,
+        .shared.maxwell_modulus = maxwell ? e[SF_ESTIMATE_ED].value : 0,
+        .shared.maxwell_rate = maxwell ? e[SF_ESTIMATE_BETA1].value : 5000,
+        .shared.rate_filter_time = 1e-4,
+        .tension_cutoff = 1e30,
+        .densification_rule = e[SF_ESTIMATE_LIMIT].present && e[SF_ESTIMATE_LIMIT].value < 1
+                                  ? SF_DENSIFICATION_H2
+                                  : SF_DENSIFICATION_H1,
+        .densification_start = fit->data.start,
+        .densification_limit = e[SF_ESTIMATE_LIMIT].present ? e[SF_ESTIMATE_LIMIT].value : 1,
+        .densification_exponent = own ? 0 : e[SF_ESTIMATE_EXPONENT].value};
+    card->shared.informed_strain = fit->data.end;
     for (int k = 0; k < c->test_count && c->thermal; k++) /* a drop has the curve of one or two of them */
-        card->informed_strain = fmin(card->informed_strain, c->test[k].largest_strain);
+        card->shared.informed_strain = fmin(card->shared.informed_strain, c->test[k].largest_strain);
     int count = fit->table_count;
     SF_TRY(sf_form_curves_alloc(fit->rate_count, (int64_t)fit->rate_count * count, &card->curves, err));
     for (int r = 0; r < fit->rate_count; r++) {
-        card->curve_rate[r] = sf_compression_curve_rate(fit, r);
-        memcpy(&card->curve_strain[r * count], fit->table_strain, (size_t)count * sizeof(double));
-        memcpy(&card->curve_stress[r * count], fit->table_stress[r], (size_t)count * sizeof(double));
+        card->curves.curve_rate[r] = sf_compression_curve_rate(fit, r);
+        memcpy(&card->curves.curve_strain[r * count], fit->table_strain, (size_t)count * sizeof(double));
+        memcpy(&card->curves.curve_stress[r * count], fit->table_stress[r], (size_t)count * sizeof(double));
     }
     return SF_OK;
 }

@@ -135,19 +135,19 @@ static const struct {
     sf_foam_parameter parameter;
     size_t offset;
 } members[] = {{SF_PARAMETER_E, offsetof(sf_foam_card, modulus)},
-               {SF_PARAMETER_HU, offsetof(sf_foam_card, hysteresis_hu)},
-               {SF_PARAMETER_SHAPE, offsetof(sf_foam_card, hysteresis_shape)},
-               {SF_PARAMETER_ALPHA, offsetof(sf_foam_card, hysteresis_alpha)},
-               {SF_PARAMETER_DAMP, offsetof(sf_foam_card, damp)},
-               {SF_PARAMETER_ED, offsetof(sf_foam_card, maxwell_modulus)},
-               {SF_PARAMETER_BETA1, offsetof(sf_foam_card, maxwell_rate)},
-               {SF_PARAMETER_ETA, offsetof(sf_foam_card, kelvin_viscosity)},
-               {SF_PARAMETER_RATE_FACTOR, offsetof(sf_foam_card, rate_factor)},
-               {SF_PARAMETER_RATE_REFERENCE, offsetof(sf_foam_card, rate_reference)},
-               {SF_PARAMETER_RATE_FILTER_TIME, offsetof(sf_foam_card, rate_filter_time)},
-               {SF_PARAMETER_RELOAD, offsetof(sf_foam_card, memory.reload)},
-               {SF_PARAMETER_DRIFT, offsetof(sf_foam_card, memory.drift)},
-               {SF_PARAMETER_RECOVERY, offsetof(sf_foam_card, memory.recovery)}};
+               {SF_PARAMETER_HU, offsetof(sf_foam_card, shared.hysteresis_hu)},
+               {SF_PARAMETER_SHAPE, offsetof(sf_foam_card, shared.hysteresis_shape)},
+               {SF_PARAMETER_ALPHA, offsetof(sf_foam_card, shared.hysteresis_alpha)},
+               {SF_PARAMETER_DAMP, offsetof(sf_foam_card, shared.damp)},
+               {SF_PARAMETER_ED, offsetof(sf_foam_card, shared.maxwell_modulus)},
+               {SF_PARAMETER_BETA1, offsetof(sf_foam_card, shared.maxwell_rate)},
+               {SF_PARAMETER_ETA, offsetof(sf_foam_card, shared.kelvin_viscosity)},
+               {SF_PARAMETER_RATE_FACTOR, offsetof(sf_foam_card, shared.rate_factor)},
+               {SF_PARAMETER_RATE_REFERENCE, offsetof(sf_foam_card, shared.rate_reference)},
+               {SF_PARAMETER_RATE_FILTER_TIME, offsetof(sf_foam_card, shared.rate_filter_time)},
+               {SF_PARAMETER_RELOAD, offsetof(sf_foam_card, shared.memory.reload)},
+               {SF_PARAMETER_DRIFT, offsetof(sf_foam_card, shared.memory.drift)},
+               {SF_PARAMETER_RECOVERY, offsetof(sf_foam_card, shared.memory.recovery)}};
 enum { MEMBERS = sizeof members / sizeof *members };
 
 void sf_foam_form_start_rate(double value[SF_PARAMETER_COUNT]) {
@@ -165,12 +165,12 @@ void sf_foam_form_start(const sf_foam_form *form, double value[SF_PARAMETER_COUN
     memset(value, 0, SF_PARAMETER_COUNT * sizeof *value);
     for (int k = 0; k < MEMBERS; k++)
         value[members[k].parameter] = *(const double *)((const char *)&form->base + members[k].offset);
-    if (!(form->base.rate_factor > 0))
+    if (!(form->base.shared.rate_factor > 0))
         value[SF_PARAMETER_RATE_REFERENCE] = RATE_REFERENCE;
     value[SF_PARAMETER_STRESS_SCALE] = 1;
     value[SF_PARAMETER_EXPONENT] = form->base.densification_exponent;
     value[SF_PARAMETER_SOLID_FRACTION] =
-        form->solid_density > 0 ? form->base.density / form->solid_density : 0;
+        form->solid_density > 0 ? form->base.shared.density / form->solid_density : 0;
     form->curve->start(value);
 }
 
@@ -183,13 +183,13 @@ double sf_foam_form_prior_sd(const sf_foam_form *form, sf_foam_parameter paramet
 
 static sf_status copy_card(const sf_foam_card *from, sf_foam_card *to, sf_error *err) {
     *to = *from;
-    size_t count = (size_t)from->curve_count, points = (size_t)from->curve_points;
-    SF_TRY(sf_form_curves_alloc(from->curve_count, from->curve_points, &to->curves, err));
+    size_t count = (size_t)from->curves.curve_count, points = (size_t)from->curves.curve_points;
+    SF_TRY(sf_form_curves_alloc(from->curves.curve_count, from->curves.curve_points, &to->curves, err));
     if (count > 0) {
-        memcpy(to->curve_rate, from->curve_rate, count * sizeof *to->curve_rate);
-        memcpy(to->curve_ptr, from->curve_ptr, (count + 1) * sizeof *to->curve_ptr);
-        memcpy(to->curve_strain, from->curve_strain, points * sizeof *to->curve_strain);
-        memcpy(to->curve_stress, from->curve_stress, points * sizeof *to->curve_stress);
+        memcpy(to->curves.curve_rate, from->curves.curve_rate, count * sizeof *to->curves.curve_rate);
+        memcpy(to->curves.curve_ptr, from->curves.curve_ptr, (count + 1) * sizeof *to->curves.curve_ptr);
+        memcpy(to->curves.curve_strain, from->curves.curve_strain, points * sizeof *to->curves.curve_strain);
+        memcpy(to->curves.curve_stress, from->curves.curve_stress, points * sizeof *to->curves.curve_stress);
     }
     return SF_OK;
 }
@@ -204,8 +204,8 @@ void sf_foam_card_free(sf_foam_card *card) {
 static sf_status lock_table(double pole, sf_foam_card *card, sf_error *err) {
     double start = TAKES_OVER * pole, own = card->densification_start, stress, slope, energy;
     sf_curve curve;
-    for (int64_t c = 1; c <= card->curve_count; c++)
-        start = fmin(start, card->curve_strain[card->curve_ptr[c] - 1]);
+    for (int64_t c = 1; c <= card->curves.curve_count; c++)
+        start = fmin(start, card->curves.curve_strain[card->curves.curve_ptr[c] - 1]);
     start = own > 0 ? fmin(start, own) : start;
     SF_TRY(sf_curve_build(card, 0, &curve, err));
     sf_curve_evaluate(&curve, start, &stress, &slope, &energy);
@@ -223,13 +223,13 @@ sf_status sf_foam_form_card(const sf_foam_form *form, const double value[SF_PARA
     SF_TRY(copy_card(&form->base, card, err));
     for (int k = 0; k < MEMBERS; k++)
         *(double *)((char *)card + members[k].offset) = value[members[k].parameter];
-    card->hysteresis_hu = fmin(1, card->hysteresis_hu);
+    card->shared.hysteresis_hu = fmin(1, card->shared.hysteresis_hu);
     if (form->curve->stress) {
         sf_curve_form_tabulate(form->curve, value, card, err);
     } else {
         card->densification_exponent = value[SF_PARAMETER_EXPONENT];
-        for (int64_t k = 0; k < card->curve_points; k++)
-            card->curve_stress[k] *= value[SF_PARAMETER_STRESS_SCALE];
+        for (int64_t k = 0; k < card->curves.curve_points; k++)
+            card->curves.curve_stress[k] *= value[SF_PARAMETER_STRESS_SCALE];
         double locked = value[SF_PARAMETER_LOCKED];
         if (locked > 0 && 1 - locked < card->densification_limit)
             lock_table(1 - locked, card, err);
@@ -254,12 +254,12 @@ static double table_end(const sf_curve *curve, double limit) {
 sf_status sf_foam_card_resample(sf_foam_card *card, sf_error *err) {
     enum { FINE = 196 };
     SF_OWNED_BY(sf_law_curves_free) sf_law_curves fine = {0};
-    SF_TRY(sf_form_curves_alloc(card->curve_count, FINE * card->curve_count, &fine, err));
-    for (int64_t c = 0; c < card->curve_count; c++) {
+    SF_TRY(sf_form_curves_alloc(card->curves.curve_count, FINE * card->curves.curve_count, &fine, err));
+    for (int64_t c = 0; c < card->curves.curve_count; c++) {
         SF_OWNED_BY(sf_curve_free) sf_curve curve = {0};
         SF_TRY(sf_curve_build(card, c, &curve, err));
         double last = table_end(&curve, card->densification_limit), slope, energy;
-        fine.curve_rate[c] = card->curve_rate[c];
+        fine.curve_rate[c] = card->curves.curve_rate[c];
         for (int k = 0; k < FINE; k++) {
             int64_t at = c * FINE + k;
             fine.curve_strain[at] = last * k / (FINE - 1);
