@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, Mapping, NamedTuple, Sequence
 
 import numpy as np
-from scipy import stats
 
 from . import library, memory
 from .array import Array
@@ -194,7 +193,7 @@ def spread(draws: list[Draw], searches: Sequence[tuple[Sequence[Point], str]], l
         made.whole = heights if name == PARTS[2] else made.whole
     gravity, error, pairs = rig
     if pairs:
-        factor = STANDARD_GRAVITY / gravity * np.exp(-stats.t.rvs(pairs - 1, size=made.whole.size, random_state=random) * error / gravity) if pairs > 1 else \
+        factor = STANDARD_GRAVITY / gravity * np.exp(-random.standard_t(pairs - 1, made.whole.size) * error / gravity) if pairs > 1 else \
             STANDARD_GRAVITY / gravity
         made.rig = _interval(made.whole.ravel() * factor, quantile)
     return made

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import Callable, Sequence
 
 import numpy as np
-from scipy import stats
 from scipy.optimize import least_squares
+from scipy.special import chdtri, ndtri, stdtrit
 
 from ..array import Array
 from ..errors import Error, NumericError
@@ -267,7 +267,7 @@ class Found:
     @property
     def half_width(self) -> float:
         """Returns the standard errors on each side of a 95 % interval."""
-        return float(stats.t.ppf(0.975, max(1.0, self.freedom))) if self.scale > 1 else float(stats.norm.ppf(0.975))
+        return float(stdtrit(max(1.0, self.freedom), 0.975) if self.scale > 1 else ndtri(0.975))
 
     def sd_of_log(self) -> Array:
         return np.asarray(np.sqrt(np.diag(self.covariance)) * self.problem.log_slope(self.x))
@@ -443,7 +443,7 @@ def _found(problem: Problem, x: Array, residual: Array, jacobian: Array, slope: 
     misfit = float(residual[:-n] @ residual[:-n])
     rows = int(np.count_nonzero(np.any(data != 0, axis=1)))
     freedom = max(1e-6, rows - float(np.trace(data @ covariance @ data.T)))
-    scale = math.sqrt(misfit / freedom) if misfit > stats.chi2.ppf(0.95, freedom) else 1.0
+    scale = math.sqrt(misfit / freedom) if misfit > chdtri(freedom, 0.05) else 1.0
     lower = [v - low < ON_BOUND for v, low in zip(x, problem.low)]
     upper = [high - v < ON_BOUND or (name == "HU" and Problem.value(name, v) > ALL_RETURNED) for name, v, high in zip(problem.names, x, problem.high)]
     bounds = [f"{name} stands at its {'lower' if at_low else 'upper'} bound" for name, at_low, at_high in zip(problem.names, lower, upper) if at_low or at_high]
