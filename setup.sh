@@ -164,8 +164,9 @@ test)
     # Where no test may be skipped, Snakemake is needed too.
     install_packages build run show python test ${SF_NO_SKIP:+cluster}
     build
-    # One test per core and one thread per test; tests of threading set their own number.
-    OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(processors)"
+    # One thread per test (tests of threading set their own number), and one test more than there are
+    # processors: tests of pages wait for the browser, others for a limit.
+    OMP_NUM_THREADS=1 run_tests --label-regex "$label" --label-exclude slow --parallel "$(($(processors) + 1))"
     ;;
 slow)
     install_packages build run show python test slow cluster slurm
