@@ -131,7 +131,7 @@ static void run_with_signals(const program_place *p, const char *results, const 
                              int least, bool after_steps) {
     char checkpoint[64];
     uint64_t seed = 7;
-    double longest = 0.8 * run_time / least;
+    double pace = 1; /* of the waits, to those by the times that were measured */
     int killed = 0, opened = 0;
     snprintf(checkpoint, sizeof checkpoint, "%s.restart", results);
     for (int turn = 0; turn < 100 * least; turn++) {
@@ -140,20 +140,21 @@ static void run_with_signals(const program_place *p, const char *results, const 
         struct timespec before = run_written_at(p->folder, checkpoint);
         pid_t child = run_start(p, before.tv_sec ? again : anew);
         int status = 0, number = numbers[turn % count];
-        double wait =
-            killed < least ? start_time + 0.5 * longest * (1 + fixture_random(&seed)) : 1e3 * run_time;
+        double part = 0.4 * run_time / least * (1 + fixture_random(&seed)),
+               wait = killed < least ? pace * (start_time + part) : 1e3 * run_time;
         while ((time_of(child) < wait ||
                 (after_steps && !run_is_other(before, run_written_at(p->folder, checkpoint)))) &&
                waitpid(child, &status, WNOHANG) == 0)
             run_sleep(0.002);
         if (kill(child, number) == 0 && waitpid(child, &status, 0) == child)
-            killed++;
+            killed += !WIFEXITED(status) || WEXITSTATUS(status) != 0;
         if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
             if (killed >= least)
                 break;
-            longest /= 2;
+            pace /= 2;
             killed = opened = 0;
-            assert_int_equal(remove(program_path(p, checkpoint)), 0);
+            assert_true(pace > 0.05);
+            assert_int_equal(remove(program_path(p, checkpoint)) + remove(program_path(p, results)), 0);
             continue;
         }
         if (WIFSIGNALED(status) ? WTERMSIG(status) != number : WEXITSTATUS(status) != SF_INTERRUPTED)

@@ -14,11 +14,12 @@ ran=no
 export SF_BIN_DIR="$PWD/$build/bin" SF_SOURCE_DIR="$PWD"
 [ -x build-debug/bin/softfall-post ] && export SF_DEBUG_BIN_DIR="$PWD/build-debug/bin" # reproducibility compares
 
+mkdir -p "$build/verification"
 failed=""
 for name in "$@"; do
-    [ $ran = no ] || break
+    [ -x "$build/verify/study_$name" ] || { echo "no study $name in $build: build first" >&2; exit 1; }
+    [ $ran = no ] || continue
     program="$build/verify/study_$name"
-    [ -x "$program" ] || { echo "no study $name in $build: build first" >&2; exit 1; }
     echo "== $name"
     status=0
     "$program" "$build/verification" | tail -n 1 || status=$?

@@ -145,7 +145,7 @@ def write_fit(folder: Path, truth: dict[str, Outcome], random: np.random.Generat
 
 def foam(number: int, spacing: float) -> dict[str, object]:
     """Returns the row of a foam: of each number foretold the truth, and the interval of all models and of the best one."""
-    begin, row = time.process_time(), {"foam": number, "failure": ""}
+    begin, row = time.process_time(), {"foam": number, "failure": "", "stretch": search.STRETCH}
     search.STARTS = 1
     with tempfile.TemporaryDirectory() as name:
         folder, random = Path(name), np.random.default_rng([7, number])
@@ -221,6 +221,8 @@ def main() -> int:
     o.folder.mkdir(parents=True, exist_ok=True)
     path = o.folder / "foams.csv"
     rows = list(csv.DictReader(path.open())) if path.exists() else []
+    if any(row.get("stretch") != str(search.STRETCH) for row in rows):
+        parser.error(f"{path} has foams of another softfall: give another folder")
     wanted = [k for k in range(o.first, o.first + o.foams) if k not in {int(row["foam"]) for row in rows}]
     with concurrent.futures.ProcessPoolExecutor(o.jobs) as pool:
         for made in concurrent.futures.as_completed([pool.submit(foam, k, o.spacing) for k in wanted]):

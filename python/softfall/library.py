@@ -327,11 +327,16 @@ class Form:
         return Foam(made)
 
 
+class _Instrument(c.Structure):
+    _fields_ = [(name, c.c_double) for name in ("frequency", "damping", "coupling", "filter")]
+
+
 def reading(time: Any, deceleration: Any, chain: Sequence[float], channel_class: float) -> tuple[Array, float]:
     """softfall_reading: the curve as an instrument reads it, and the instant of contact (s)."""
     read, contact = np.empty_like(deceleration), c.c_double()
-    instrument = (c.c_double * 4)(*chain, channel_class)  # a softfall_instrument
-    _call("softfall_reading", _array(time), _array(deceleration), c.c_int64(time.size), instrument, _array(read), c.byref(contact))
+    frequency, damping, coupling = chain
+    instrument = _Instrument(frequency, damping, coupling, channel_class)
+    _call("softfall_reading", _array(time), _array(deceleration), c.c_int64(time.size), c.byref(instrument), _array(read), c.byref(contact))
     return read, contact.value
 
 

@@ -10,6 +10,7 @@ from .array import Array
 from .drop import Drop, Frame
 from .template import png
 
+LEFT, ROW = 45, 13  # points: the margin of the y axis, a row of the key
 SEEN = 0.01  # of the largest value: a curve this far from another is seen beside it
 MODEL, MEASURED, PALE, LIMIT, SHADE = "#08519c", "#202020", "#a0a0a0", "#cb181d", "#c6dbef"
 COLOURS = ("#eef0ec", "#b0d0e4", "#5496c8", "#3ea58c", "#ecd454", "#f08a34", "#c42428", "#60001e")  # those of view.html
@@ -27,15 +28,15 @@ Table = Mapping[str, Array]
 
 
 def _figure(width: float, height: float) -> tuple[Any, Any]:
-    """Returns a figure (inches) with axes in margins of its own: a layout that measures every text takes a third of the time of a page."""
+    """Returns a figure (inches) with axes in margins for the labels of _tidy: a layout that measures every text takes a third of the time of a page."""
     from matplotlib.figure import Figure
     figure = Figure(figsize=(width, height), dpi=170)
     ax = figure.add_axes((0, 0, 1, 1))
-    _place(ax, 45, 36)
+    _place(ax, LEFT, 36)
     return figure, ax
 
 
-def _place(ax: Any, left: float, bottom: float, right: float = 10, top: float = 8) -> None:
+def _place(ax: Any, left: float, bottom: float, right: float = 10, top: float = 11) -> None:
     """Gives the axes their margins, in points."""
     width, height = 72 * ax.figure.get_size_inches()
     ax.set_position((left / width, bottom / height, 1 - (left + right) / width, 1 - (bottom + top) / height))
@@ -43,6 +44,9 @@ def _place(ax: Any, left: float, bottom: float, right: float = 10, top: float = 
 
 def _tidy(ax: Any) -> None:
     ax.tick_params(labelsize=8)
+    if ax.get_yscale() == "linear":
+        ax.ticklabel_format(axis="y", scilimits=(-2, 4))  # at most five characters
+        ax.yaxis.get_offset_text().set_fontsize(7)
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
 
@@ -50,7 +54,7 @@ def _tidy(ax: Any) -> None:
 def _key(figure: Any, ax: Any, columns: int) -> None:
     """Puts the key below the axes, where it lies over nothing."""
     rows = -(-len(ax.get_legend_handles_labels()[1]) // columns)
-    _place(ax, 45, 38 + 13 * rows)
+    _place(ax, LEFT, 38 + ROW * rows)
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 0), bbox_transform=figure.transFigure, ncols=columns, fontsize=8, frameon=False, borderaxespad=0.2)
 
 
@@ -122,18 +126,18 @@ def energies(history: Table, shown: tuple[float, float]) -> bytes:
             ax.plot(history["time_ms"], history[name], color=colour, lw=1.4, label=title)
     ax.set(xlim=shown, ylim=(0, None), xlabel="time (ms)", ylabel="energy (J)")
     _tidy(ax)
-    _key(figure, ax, 4)
+    _key(figure, ax, 3)
     return png(figure)
 
 
 def several(curves: Mapping[str, tuple[Array, Array]]) -> bytes:
     """Returns the accelerations of several runs over the time from first contact."""
-    figure, ax = _figure(7.2, 4.0)
+    figure, ax = _figure(7.2, 3.4 + ROW * len(curves) / 72)
     for title, (time, value) in curves.items():
         ax.plot(time, value, lw=1.4, label=title.replace("$", r"\$"))
     ax.set(xlabel="time from first contact (ms)", ylabel="acceleration (g)")
     _tidy(ax)
-    _key(figure, ax, 2)
+    _key(figure, ax, 1)  # names of runs may be long
     return png(figure)
 
 

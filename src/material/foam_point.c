@@ -28,7 +28,7 @@ sf_foam_options sf_foam_options_build(const sf_foam_shared *card) {
 
 enum { MAX_SWEEPS = 8 };
 
-/* One rotation of a, (xx, yy, zz, xy, yz, xz), in the plane (p, q); r is the third index. Element (row,
+/* One rotation of a, (xx, yy, zz, xy, yz, xz), in the plane (p, q). Element (row,
  * column) of v is v[3 * row + column]. With d = aqq - app, h = sqrt(d^2 + 4 apq^2) the tangent of the angle
  * is 2 apq / (d +- h), and the eigenvalues move by (h - |d|) / 2. */
 static inline void rotate(double a[6][SF_LANES], double v[9][SF_LANES], int p, int q) {

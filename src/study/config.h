@@ -25,11 +25,11 @@ void sf_config_close(sf_config *config);
 sf_status sf_config_names(const sf_config *config, const config_setting_t *group, const char *names,
                           sf_error *err);
 
-/* One key of a group into `*out`, which must hold the default and is left alone if the key is absent, unless
- * it is `required`. Bounds are inclusive. */
+/* One key of a group into `*out`, which must hold the default and is left alone if the key is absent. Bounds
+ * are inclusive. */
 sf_status sf_config_number(const sf_config *config, const config_setting_t *group, const char *name,
                            double low, double high, double *out, sf_error *err);
-/* SI value above zero. */
+/* SI value above zero; an absent key is refused if it is `required`. */
 sf_status sf_config_quantity(const sf_config *config, const config_setting_t *group, const char *name,
                              sf_quantity kind, bool required, double *out, sf_error *err);
 /* true or false; `*out` is left alone if the key is absent. */

@@ -20,8 +20,8 @@ import softfall
 from conftest import command_here
 from softfall import cfh_draws, library, memory
 from softfall.fit import input as fit_input, posterior
-from softfall.fit.drops import COARSE, OWN, SECTION, Bench
-from softfall.fit.search import Problem
+from softfall.fit.drops import COARSE, OWN, SECTION, Bench, Outcome
+from softfall.fit.search import Found, Problem
 
 BIN, ROOT = Path(os.environ["SF_BIN_DIR"]), Path(__file__).resolve().parents[2]
 START = 'law = "low_density_foam"; density = "35 kg/m3"; E = "0.4136 MPa"; curve = "start.csv"; HU = 0.3; SHAPE = 3.0; DAMP = 0.05; rate_factor = 0.2; rate_reference = "1 1/s"; rate_filter_time = "0.5 ms";\n'
@@ -210,7 +210,12 @@ def test_draws_are_materials_of_every_model_with_errors_of_the_responses(lab: Pa
 def test_an_interval_beyond_the_measured_strains_is_wider() -> None:
     average, value = object.__new__(posterior.Average), np.exp(0.1 * np.random.default_rng(5).standard_normal(999))
     average.seed, average.values, average.sizes, average.model_of = 1, {(0, 0): value, (1, 0): value, (2, 0): np.where(value > 1.1, np.inf, value)}, np.ones(999), np.zeros(999)
-    average.posteriors = [SimpleNamespace(found=SimpleNamespace(is_beyond=lambda d: d > 0))]  # type: ignore[list-item]
+    drops = [SimpleNamespace(predicted=d > 0) for d in range(4)]
+    own = [Outcome({} if failure else {"max_local_strain": strain}, 0, "", failure) for strain, failure in ((0.7, ""), (0.8, ""), (0.0, "it collapses"), (0.69, ""))]
+    problem = SimpleNamespace(drops=drops, given=SimpleNamespace(compressions=[]))
+    found = Found(problem, *[None] * 13, own=own, fitted=own[:1])  # type: ignore[arg-type]
+    assert found.deepest == 0.7 and [found.is_beyond(d) for d in range(4)] == [False, True, True, False]
+    average.posteriors, average.weights = [None, SimpleNamespace(found=found)], [0.0, 1.0]  # type: ignore[list-item]
     within, beyond, open_above = (np.log(average.quantile(d, 0, 0.0)) for d in range(3))
     assert beyond[2] == within[2] and beyond - beyond[2] == pytest.approx(1.6 * (within - within[2]))
     assert open_above[:3] == pytest.approx(beyond[:3]) and np.isinf(open_above[3:]).all()

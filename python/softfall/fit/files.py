@@ -85,10 +85,15 @@ def look_at_curve(s: Study) -> None:
 
 def extrapolated(s: Study) -> list[str]:
     """Returns which predicted drops strain the foam beyond what was measured, in words."""
-    deep = [(drop.name, s.fit.own[d].get("max_local_strain")) for d, drop in enumerate(s.given.drops) if s.fit.is_beyond(d) and not s.fit.own[d].failure]
-    wide = f", {STRETCH:g} times as wide as the models say" if s.average else ""
-    return [f"{name} strains the foam to {strain:.3f}, the data to {s.fit.deepest:.3f}: its interval is an extrapolation{wide}, and of a foam that locks up early still too narrow: "
-            "measure a drop that strains the foam as far, or at least give the pole, ALPHA and rate_factor wide priors (docs/validation.md, coverage)" for name, strain in deep]
+    made = []
+    for d, drop in enumerate(s.given.drops):
+        strain, wide = s.fit.own[d].get("max_local_strain"), f", {STRETCH:g} times as wide as the models say" if s.average and s.fit.is_beyond(d) else ""
+        if drop.predicted and s.fit.own[d].failure and wide:
+            made.append(f"{drop.name} fails with the best foam: its interval is an extrapolation{wide}")
+        elif drop.predicted and strain > s.informed[1]:
+            made.append(f"{drop.name} strains the foam to {strain:.3f}, the data to {s.informed[1]:.3f}: its interval is an extrapolation{wide}, and still too narrow if the foam locks up early: "
+                        "measure a drop that strains the foam as far, or at least give the pole, ALPHA and rate_factor wide priors (docs/validation.md, coverage)")
+    return made
 
 
 def provenance(s: Study) -> str:

@@ -137,7 +137,7 @@ def quantiles(values: Array, weights: Array, shares: Sequence[float] = TAIL) -> 
 
 
 def stretched(q: Array) -> Array:
-    """Returns quantiles TAIL whose logarithms are STRETCH times as far from the median; infinite ones stay.
+    """Returns quantiles TAIL whose logarithms are STRETCH times as far from the median; all stay where that is infinite.
 
     >>> stretched(np.exp([-0.2, -0.1, 0.0, 0.1, 0.2])).round(3).tolist()
     [0.726, 0.852, 1.0, 1.174, 1.377]
@@ -475,6 +475,13 @@ class Average:
     def first(self) -> Posterior:
         return next(one for one in self.posteriors if one is not None)
 
+    @property
+    def best(self) -> Posterior:
+        """Returns that of the model of the largest weight, as fit.json tells its drops."""
+        one = self.posteriors[int(np.argmax(self.weights))]
+        assert one is not None
+        return one
+
     def repeatability(self, k: int) -> float:
         """Returns the standard deviation of the logarithm by which a measurement of a number scatters: that of the measured drops."""
         told = [drop.sd[KINDS[k].key] for drop in self.first.problem.measured if KINDS[k].key in drop.sd]
@@ -490,7 +497,7 @@ class Average:
         random = np.random.default_rng(self.seed + d)
         scatter = self.repeatability(k) if scatter is None else scatter
         q = quantiles(values[known] * np.exp(scatter * random.standard_normal(int(known.sum()))), self.sizes[known])
-        return stretched(q) if self.first.found.is_beyond(d) else q
+        return stretched(q) if self.best.found.is_beyond(d) else q
 
     def missing(self, d: int, k: int) -> float:
         """Returns the share of draws without a value, as the foam collapses."""
