@@ -27,9 +27,9 @@ def choices_of(path):
 def prose(file, text):
     """The lines of a page, or those of a source with all blank that is no comment."""
     if file.suffix in (".c", ".h"):
-        text = re.sub(r"(/\*.*?\*/)|[^\n]", r"\1", text, flags=re.DOTALL)
+        text = re.sub(r"(/\*.*?\*/)|[^\n/]+|/", r"\1", text, flags=re.DOTALL)
     elif file.suffix != ".md":
-        text = re.sub(r"(#.*)|[^\n]", r"\1", text)
+        text = re.sub(r"(#.*)|[^\n#]+", r"\1", text)
     return text.splitlines()
 
 
