@@ -12,6 +12,16 @@ double point_eva_stress(double strain) {
     return 7.4e3 * -expm1(-413.6 / 7.4 * strain) + 134e3 * x + 23.3e3 * pow(x, 2.8);
 }
 
+sf_foam_shared point_elastic_foam(double density) {
+    return (sf_foam_shared){.density = density,
+                            .hysteresis_hu = 1,
+                            .hysteresis_shape = 1,
+                            .hysteresis_alpha = 1,
+                            .maxwell_rate = 5000,
+                            .rate_reference = 0.01,
+                            .rate_filter_time = 1e-4};
+}
+
 void point_card_init(point_card *card) {
     memset(card, 0, sizeof *card);
     card->card = (sf_foam_card){

@@ -21,6 +21,9 @@ typedef struct point_card {
 /* Nominal stress (Pa) of an EVA-like foam: yield, plateau, densification; smooth and singular at 1. */
 double point_eva_stress(double strain);
 
+/* What all foams share, of one of this density (kg m-3) without hysteresis and viscosity. */
+sf_foam_shared point_elastic_foam(double density);
+
 /* Card without viscosity, hysteresis or cut-off, E = 0.4 MPa, rule H1, and no curve yet. */
 void point_card_init(point_card *card);
 

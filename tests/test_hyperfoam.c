@@ -18,15 +18,8 @@
 
 /* One term of nu, in the range of foams; no hysteresis, no viscosity. */
 static sf_hyperfoam_card simple_card(double alpha, double nu) {
-    return (sf_hyperfoam_card){.shared.density = 100,
-                               .shared.hysteresis_hu = 1,
-                               .shared.hysteresis_shape = 1,
-                               .shared.hysteresis_alpha = 1,
-                               .shared.maxwell_rate = 5000,
-                               .shared.rate_reference = 0.01,
-                               .shared.rate_filter_time = 1e-4,
-                               .stable_to = 0.9,
-                               .term = {{.mu = 2e5, .alpha = alpha, .nu = nu}}};
+    return (sf_hyperfoam_card){
+        .shared = point_elastic_foam(100), .stable_to = 0.9, .term = {{.mu = 2e5, .alpha = alpha, .nu = nu}}};
 }
 
 /* Six terms, one of them softening. */

@@ -3,6 +3,7 @@
  * tolerates. */
 #include "extreme.h"
 #include "model_fixture.h"
+#include "point_fixture.h"
 
 #include "material/hyperfoam.h"
 #include "solver/step.h"
@@ -148,13 +149,7 @@ static void make_hyperfoam(sf_case *c) {
     sf_material_free(&c->material);
     assert_int_equal(sf_material_create(&sf_hyperfoam_law, &c->material, &err), SF_OK);
     *(sf_hyperfoam_card *)c->material.card = (sf_hyperfoam_card){
-        .shared.density = 35,
-        .shared.hysteresis_hu = 1,
-        .shared.hysteresis_shape = 1,
-        .shared.hysteresis_alpha = 1,
-        .shared.maxwell_rate = 5000,
-        .shared.rate_reference = 0.01,
-        .shared.rate_filter_time = 1e-4,
+        .shared = point_elastic_foam(35),
         .stable_to = 0.9,
         .term = {{.mu = 1.5e5, .alpha = 8, .nu = 0.25}, {.mu = 4e4, .alpha = -1.5, .beta = 0.2}}};
 }
