@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The libraries behind include/softfall/softfall.h, made of the rooms' objects:
+# The libraries behind include/softfall, made of the rooms' objects:
 #   libsoftfall        solve and evaluate: HDF5, GSL, UDUNITS, CHOLMOD; neither gmsh nor libconfig
 #   libsoftfall-build  read a case and build its model: with libconfig; it starts softfall-mesh, which has gmsh
-# They are shared, and show only the functions of softfall.h: internal names cannot meet those of a user's program.
+# They are shared, and show only the functions declared there: internal names cannot meet those of a user's program.
 function(softfall_shared target name export)
     cmake_parse_arguments(arg "" "" "SOURCES;PRIVATE;PUBLIC" ${ARGN})
     add_library(${target} SHARED ${arg_SOURCES})
@@ -18,10 +18,12 @@ function(softfall_shared target name export)
 endfunction()
 
 softfall_shared(softfall_api softfall softfall
-    SOURCES src/api/api_drop.c src/api/api_record.c
+    SOURCES src/api/batch.c src/api/curve.c src/api/drop.c src/api/figures.c src/api/model.c src/api/record.c
+        src/api/status.c src/api/units.c
     PRIVATE softfall_drop)
 softfall_shared(softfall_api_build softfall-build build
-    SOURCES src/api/api_case.c src/api/api_compression.c src/api/api_form.c src/api/api_material.c src/api/api_settings.c src/api/api_variant.c
+    SOURCES src/api/case.c src/api/compression.c src/api/form.c src/api/material.c src/api/settings.c
+        src/api/variant.c
     PRIVATE softfall_accuracy softfall_report softfall_study
     PUBLIC softfall_api)
 
@@ -43,4 +45,4 @@ install(FILES ${CMAKE_BINARY_DIR}/generated/softfallConfig.cmake
 install(TARGETS softfall_api softfall_api_build EXPORT softfallTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT softfallTargets NAMESPACE softfall:: DESTINATION ${SOFTFALL_CMAKE_DIR})
-install(FILES ${CMAKE_SOURCE_DIR}/include/softfall/softfall.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softfall)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/include/softfall DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -17,7 +17,7 @@ set(CMAKE_C_STANDARD 17)
 set(CMAKE_C_STANDARD_REQUIRED ON)
 set(CMAKE_C_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-# The objects of the programs are those of the shared libraries, which show only what softfall.h declares.
+# The objects of the programs are those of the shared libraries, which show only what include/softfall declares.
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_C_VISIBILITY_PRESET hidden)
 # assert() guards programmer errors and costs nothing in the kernels: keep it in every build.

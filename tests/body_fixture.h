@@ -4,7 +4,7 @@
 #define SF_TESTS_BODY_FIXTURE_H
 
 #include "pre/mesh/mesh.h"
-#include "solver/contact/shape.h"
+#include "solver/contact/shapes.h"
 
 /* A surface and the model around it that sf_body_build reads. */
 typedef struct body {

@@ -18,12 +18,14 @@ cmake --install "$build" --prefix "$prefix" >"$place/install.log" || fail "$(tai
 lib=$(dirname "$(find "$prefix" -name libsoftfall.so)")
 export PKG_CONFIG_PATH=$lib/pkgconfig LD_LIBRARY_PATH=$lib
 
-# The header alone, in C11 and C++.
-header="$prefix/include/softfall/softfall.h"
-"$cc" -std=c11 -pedantic -Wall -Wextra -Werror -fsyntax-only -x c "$header"
-if command -v c++ >/dev/null; then
-    c++ -std=c++11 -pedantic -Wall -Wextra -Werror -fsyntax-only -x c++ "$header"
-fi
+# Each header alone, in C11 and C++.
+for header in "$prefix"/include/softfall/*.h; do
+    include="#include <softfall/${header##*/}>"
+    "$cc" -std=c11 -pedantic -Wall -Wextra -Werror -fsyntax-only -I "$prefix/include" -x c - <<<"$include"
+    if command -v c++ >/dev/null; then
+        c++ -std=c++11 -pedantic -Wall -Wextra -Werror -fsyntax-only -I "$prefix/include" -x c++ - <<<"$include"
+    fi
+done
 
 # libsoftfall needs no gmsh and no libconfig; neither library prints, ends the process or shows internal names.
 needed=$(readelf -d "$lib/libsoftfall.so" | grep NEEDED)
@@ -33,7 +35,7 @@ for name in libsoftfall libsoftfall-build; do
         fail "$name.so prints or ends the process"
     fi
     if nm -D --defined-only "$lib/$name.so" | awk '{ print $3 }' | grep -vE '^softfall_'; then
-        fail "$name.so shows more than softfall.h declares"
+        fail "$name.so shows more than include/softfall declares"
     fi
 done
 

@@ -7,6 +7,7 @@
 #include "base/mat3.h"
 #include "solver/contact/contact.h"
 #include "solver/contact/pair.h"
+#include "solver/contact/shapes.h"
 #include "solver/run/frame.h"
 #include "solver/step.h"
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The missile alone, with forces applied by hand: free fall, momentum, prescribed motion, symmetry. */
-#include "solver/contact/shape.h"
+#include "solver/contact/shapes.h"
 #include "solver/missile.h"
 
 #include "base/mat3.h"

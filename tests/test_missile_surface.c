@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "extreme.h"
-#include "solver/contact/shape.h"
+#include "solver/contact/shapes.h"
 
 #include <math.h>
 #include <setjmp.h>

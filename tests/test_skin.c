@@ -2,6 +2,7 @@
 /* What contact takes from a model: the edges of the pad's faces, the friction of each body, the side of a
  * symmetry plane. */
 #include "solver/contact/pair.h"
+#include "solver/contact/shapes.h"
 #include "solver/contact/skin.h"
 
 #include <setjmp.h>

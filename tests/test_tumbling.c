@@ -3,7 +3,7 @@
 #include "extreme.h"
 
 #include "base/mat3.h"
-#include "solver/contact/shape.h"
+#include "solver/contact/shapes.h"
 #include "solver/missile.h"
 
 #include <math.h>

@@ -5,9 +5,9 @@ object files of src/ define, and for their declarations in the headers.
 
     tools/headers.py BUILD       from the project's root
 
-Prints each function that is declared elsewhere or in no header although other files use it, and each that is public
-although no other object file uses it; exits 1 if there is one. Functions of the library, softfall_*,
-stand in include/softfall/softfall.h."""
+Prints each function that is declared elsewhere or in no header although other files use it, each that is public although
+no other object file uses it, and each file without a header of its name, programs apart; exits 1 if there is one.
+The functions softfall_* of src/api/NAME.c stand in include/softfall/NAME.h."""
 import os
 import re
 import subprocess
@@ -15,7 +15,7 @@ import sys
 
 import circles
 
-LIBRARY = "include/softfall/softfall.h"
+LIBRARY = "include/softfall"
 
 
 def declared_functions(path):
@@ -28,8 +28,9 @@ def declared_functions(path):
 
 def declarations():
     """What each header declares."""
-    paths = [os.path.join(folder, name) for folder, _, names in os.walk(circles.ROOT) for name in names if name.endswith(".h")]
-    return {path: declared_functions(path) for path in sorted(paths) + [LIBRARY]}
+    paths = [os.path.join(folder, name) for root in (circles.ROOT, LIBRARY) for folder, _, names in os.walk(root)
+             for name in names if name.endswith(".h")]
+    return {path: declared_functions(path) for path in sorted(paths)}
 
 
 def functions_and_uses(build):
@@ -57,17 +58,23 @@ def main():
     functions, uses = functions_and_uses(sys.argv[1])
     wrong = 0
     for name, unit in sorted(functions.items(), key=lambda item: (item[1], item[0])):
-        own = LIBRARY if name.startswith("softfall_") else f"{circles.ROOT}/{unit}.h"
+        public = name.startswith("softfall_")
+        own = f"{LIBRARY}/{os.path.basename(unit)}.h" if public else f"{circles.ROOT}/{unit}.h"
         where = [path for path, (names, begins) in headers.items() if name in names or name.startswith(tuple(begins))]
         problem = ""
         if where and where != [own]:
             problem = f"is declared in {' and '.join(where)}, its place is {own}"
         elif not where and name in uses:
             problem = f"is used by other files, but no header declares it; its place is {own}"
-        elif where and own != LIBRARY and name not in uses:
+        elif where and not public and name not in uses:
             problem = "is declared for other files, but none uses it: make it static"
         if problem and name != "main":
             print(f"{circles.ROOT}/{unit}.c: {name} {problem}")
+            wrong += 1
+    for unit in sorted(unit for unit in circles.object_files(sys.argv[1]) if not unit.startswith("programs/")):
+        name = f"{LIBRARY}/{os.path.basename(unit)}.h" if unit.startswith("api/") else f"{circles.ROOT}/{unit}.h"
+        if name not in headers:
+            print(f"{circles.ROOT}/{unit}.c has no {name}")
             wrong += 1
     if not functions:
         sys.exit(f"{sys.argv[1]}: no object file of src/ stands there")

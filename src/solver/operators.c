@@ -2,6 +2,7 @@
 #include "solver/operators.h"
 
 #include "model/stability.h"
+#include "solver/contact/shapes.h"
 #include "solver/set.h"
 
 static sf_status build_laws(const sf_model *m, sf_operators *op, sf_error *err) {

@@ -2,6 +2,7 @@
 #include "solver/contact/broad.h"
 
 #include "solver/contact/listing.h"
+#include "solver/contact/shapes.h"
 
 /* Reach of the lists, and the part of it at which they are made anew if it is more than twice a step's
  * travel; spacings. Of contact points, and of the skin. */
@@ -60,7 +61,7 @@ sf_status sf_broad_list(const sf_scene *c, sf_error *err) {
     SF_TRY(err->status);
     memset(l.used, 0, (size_t)c->skin->count);
     c->at->room = l.reach;
-    for (int k = 0; k < SF_SHAPES; k++)
+    for (int k = 0; sf_shapes[k]; k++)
         if (sf_shapes[k]->list)
             SF_TRY(sf_shapes[k]->list(c, &l, err));
     list_nodes(c, &l);

@@ -3,6 +3,8 @@
 
 #include "solver/contact/broad.h"
 #include "solver/contact/ledger.h"
+#include "solver/contact/shape_face.h"
+#include "solver/contact/shapes.h"
 #include "solver/contact/solve.h"
 
 /* The end of the sweeps: of contact points, whose forces are the figure, and of the skin; without and with
@@ -291,12 +293,12 @@ static sf_status solve(const sf_scene *c, sf_error *err) {
     if (!c->response) {
         measure_travel(at);
         memset(s->contact_push, 0, 3 * (size_t)c->model->node_count * sizeof *s->contact_push);
-        for (int k = 0; k < SF_SHAPES; k++)
+        for (int k = 0; sf_shapes[k]; k++)
             if (sf_shapes[k]->turn)
                 sf_shapes[k]->turn(c);
     }
     int64_t most = c->skin->count;
-    for (int k = 0; k < SF_SHAPES; k++)
+    for (int k = 0; sf_shapes[k]; k++)
         most += sf_shapes[k]->most ? sf_shapes[k]->most(c) : 0;
     sf_contact_pair passed = {.node = -1};
     sf_contact_system w = {.rows = &c->skin->rows, .push = s->contact_push, .shift = s->dt * dt_v};
@@ -308,7 +310,7 @@ static sf_status solve(const sf_scene *c, sf_error *err) {
     if (passed.node >= 0)
         return fail_passed(c, &passed, err);
     int64_t points = w.count;
-    for (int k = 0; k < SF_SHAPES; k++)
+    for (int k = 0; sf_shapes[k]; k++)
         if (sf_shapes[k]->add)
             SF_TRY(sf_shapes[k]->add(c, &w, err));
     s->contact_unsettled += !sf_contact_relax(&w, &(c->response ? CONTACT : SKIN)[w.is_dependent]);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes and bodies. All that the pad may touch is a body of one of them: the missile is a sphere cap or a
- * surface of triangles, the anvil and the symmetry planes are planes, supports, other layers and the pad
- * itself are faces and edges. The row of a shape holds what contact does with it in the order of a step:
- * bodies are made, candidates listed, pairs found, each within the limits of the row. What a row has no use
- * for is NULL. A new shape is a file with its row, and its name in the table below. */
+/* Bodies and their shapes. All that the pad may touch is a body of one of them: the missile is a
+ * sphere cap or a surface of triangles, the anvil and the symmetry planes are planes, supports, other layers
+ * and the pad itself are faces and edges. The row of a shape holds what contact does with it in the order of
+ * a step: bodies are made, candidates listed, pairs found, each within the limits of the row. What a row has
+ * no use for is NULL. A new shape is a file with its row, which shapes.c lists. */
 #pragma once
 #include "model/model.h"
 
@@ -62,24 +62,6 @@ typedef struct sf_shape {
     double entry, deepest; /* of the spacing: deepest gap of a pair that is new, and of one that goes on */
     double back;           /* m s-1, at which a depth is taken back at most */
 } sf_shape;
-
-/* The table: sf_shape_plane, normal to an axis; an exact cap of a sphere; rigid triangles; faces of pad and
- * supports; sharp edges of the pad; sharp edges of rigid triangles. */
-#define SF_SHAPE_ROWS(X) X(plane) X(sphere) X(surface) X(face) X(edge) X(sharp)
-#define SF_SHAPE_DECLARE(name) extern const sf_shape sf_shape_##name;
-SF_SHAPE_ROWS(SF_SHAPE_DECLARE)
-#define SF_SHAPE_COUNT(name) +1
-enum { SF_SHAPES = SF_SHAPE_ROWS(SF_SHAPE_COUNT) };
-extern const sf_shape *const sf_shapes[SF_SHAPES];
-
-/* Returns the triangles of a body whose sharp edges press the pad, or of all supports for one of them; none
- * of a body of another shape. */
-sf_shape_triangles sf_shape_triangles_of(const sf_model *model, int body);
-
-/* Makes a body of the model that is no part of the skin, for contact points of its largest spacing; *body is
- * empty if the model has none. */
-sf_status sf_body_build(const sf_model *model, int number, sf_body *body, sf_error *err);
-void sf_body_free(sf_body *body);
 
 static inline bool sf_body_is_near(const sf_body *body, const double x[3], double margin) {
     return body->shape->is_near(body->data, x, margin);

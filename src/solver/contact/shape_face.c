@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Faces of the pad and of supports. A node touches a face only if it comes from outside: one that lies deeper
- * behind a face than it may, as behind the other side of a thin wall, does not see it. */
+#include "solver/contact/shape_face.h"
+
 #include "base/sets.h"
 #include "solver/contact/listing.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plane that stops the pad: that of the anvil, if the pad may reach it, and those of symmetry, beyond which
- * its mirror image is. */
+#include "solver/contact/shape_plane.h"
+
 #include "solver/contact/pair.h"
 
 typedef struct plane {

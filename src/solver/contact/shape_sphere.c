@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The exact cap of a sphere. */
+#include "solver/contact/shape_sphere.h"
+
 #include "solver/contact/pair.h"
 
 typedef struct cap {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A rigid surface of triangles, with the signed distance by angle-weighted normals (Baerentzen, Aanaes 2005).
- */
+#include "solver/contact/shape_surface.h"
+
 #include "base/grid.h"
 #include "base/sets.h"
 #include "solver/contact/pair.h"

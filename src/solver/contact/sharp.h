@@ -21,3 +21,5 @@ typedef struct sf_sharp {
 sf_status sf_sharp_build(const sf_model *model, const sf_shape_triangles *triangles, const sf_skin *skin,
                          sf_sharp *sharp, sf_error *err);
 void sf_sharp_free(sf_sharp *sharp);
+
+extern const sf_shape sf_shape_sharp;

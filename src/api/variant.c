@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* libsoftfall-build: variants of a model in memory. */
-#include "api/api_material.h"
+#include "api/material.h"
 
 #include "model/model_check.h"
 #include "pre/vary.h"

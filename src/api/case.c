@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* libsoftfall-build: cases, and models made of them. */
 #include "accuracy/section_drop.h"
-#include "api/api_material.h"
+#include "api/material.h"
 #include "base/hash.h"
 #include "base/units.h"
 #include "case/read.h"

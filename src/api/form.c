@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* libsoftfall-build: forms of a foam's loading curve, and foams of their parameters. */
-#include "api/api_material.h"
+#include "api/material.h"
 
 #include "base/text.h"
 #include "case/read.h"
@@ -8,10 +8,7 @@
 #include "report/row.h"
 #include "study/fit/compression/compression_model.h"
 #include "study/fit/form/form.h"
-#include "study/material_file.h"
 #include <math.h>
-
-static const double LEAST_RISE = 1e-6; /* of a bent curve, from point to point */
 
 struct softfall_form {
     sf_foam_form form;
@@ -152,8 +149,8 @@ void softfall_form_loading(const softfall_form *form, const double *value, doubl
         if (value[SF_PARAMETER_RATE_FACTOR] > 0 && over > 1)
             stress[i] *= 1 + value[SF_PARAMETER_RATE_FACTOR] * log10(over);
         if (value[SF_PARAMETER_ED] > 0)
-            stress[i] += value[SF_PARAMETER_ED] * sf_compression_maxwell(value[SF_PARAMETER_BETA1], rate, 1,
-                                                                         strain[i], false, &walk);
+            stress[i] += value[SF_PARAMETER_ED] *
+                         sf_compression_maxwell(value[SF_PARAMETER_BETA1], rate, 1, strain[i], false, &walk);
     }
 }
 
@@ -168,42 +165,5 @@ softfall_status softfall_form_material(const softfall_form *form, const double *
     card.shared.informed_strain = informed;
     const sf_material made = sf_foam_material(&card);
     *out = sf_material_handle(&made, &err);
-    return softfall_return(&err, error);
-}
-
-static double bend_at(int64_t count, const double *strain, const double *bend, double e) {
-    int64_t k = 0;
-    while (k < count && strain[k] <= e)
-        k++;
-    if (k == 0 || k == count)
-        return bend[k == 0 ? 0 : count - 1];
-    return bend[k - 1] + (bend[k] - bend[k - 1]) * (e - strain[k - 1]) / (strain[k] - strain[k - 1]);
-}
-
-softfall_status softfall_material_bend(softfall_material *material, int64_t count, const double *strain,
-                                       const double *bend, softfall_error *error) {
-    sf_error err = SF_ERROR_INIT;
-    sf_foam_card *card = material->data.law == &sf_low_density_foam ? sf_foam_card_of(&material->data) : NULL;
-    if (!card || count < 1)
-        SF_REFUSE(&err, "only curves of the law %s can be bent, at 1 strain or more", sf_low_density_foam.name);
-    else
-        sf_foam_card_resample(card, &err);
-    for (int64_t c = 0; err.status == SF_OK && c < card->curves.curve_count; c++)
-        for (int64_t k = card->curves.curve_ptr[c]; k < card->curves.curve_ptr[c + 1]; k++) {
-            double before =
-                k > card->curves.curve_ptr[c] ? card->curves.curve_stress[k - 1] * (1 + LEAST_RISE) : 0;
-            card->curves.curve_stress[k] =
-                fmax(before, card->curves.curve_stress[k] *
-                                 exp(bend_at(count, strain, bend, card->curves.curve_strain[k])));
-        }
-    return softfall_return(&err, error);
-}
-
-softfall_status softfall_material_write(const softfall_material *material, const char *folder,
-                                        const char *name, const char *title, const char *comments,
-                                        softfall_error *error) {
-    sf_error err = SF_ERROR_INIT;
-    const sf_material_text text = {.title = title, .provenance = comments};
-    sf_material_write_checked(folder, name, &material->data, &text, &err);
     return softfall_return(&err, error);
 }

@@ -1,12 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libsoftfall-build: foams of material files, and points of them under compression. */
-#include "api/api_material.h"
+/* libsoftfall-build: foams, and points of them under compression. */
+#include "api/material.h"
 
 #include "case/read.h"
 #include "material/hyperfoam.h"
 #include "material/laws.h"
+#include "material/low_density_foam.h"
 #include "study/cushion.h"
+#include "study/fit/form/form.h"
+#include "study/material_file.h"
 #include <math.h>
+
+static const double LEAST_RISE = 1e-6; /* of a bent curve, from point to point */
 
 softfall_status softfall_material_read(const char *path, double temperature, softfall_material **out,
                                        softfall_error *error) {
@@ -51,6 +56,44 @@ int64_t softfall_material_curve(const softfall_material *material, int index, do
     *strain = &curves->curve_strain[curves->curve_ptr[index]];
     *stress = &curves->curve_stress[curves->curve_ptr[index]];
     return curves->curve_ptr[index + 1] - curves->curve_ptr[index];
+}
+
+static double bend_at(int64_t count, const double *strain, const double *bend, double e) {
+    int64_t k = 0;
+    while (k < count && strain[k] <= e)
+        k++;
+    if (k == 0 || k == count)
+        return bend[k == 0 ? 0 : count - 1];
+    return bend[k - 1] + (bend[k] - bend[k - 1]) * (e - strain[k - 1]) / (strain[k] - strain[k - 1]);
+}
+
+softfall_status softfall_material_bend(softfall_material *material, int64_t count, const double *strain,
+                                       const double *bend, softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    sf_foam_card *card = material->data.law == &sf_low_density_foam ? sf_foam_card_of(&material->data) : NULL;
+    if (!card || count < 1)
+        SF_REFUSE(&err, "only curves of the law %s can be bent, at 1 strain or more",
+                  sf_low_density_foam.name);
+    else
+        sf_foam_card_resample(card, &err);
+    for (int64_t c = 0; err.status == SF_OK && c < card->curves.curve_count; c++)
+        for (int64_t k = card->curves.curve_ptr[c]; k < card->curves.curve_ptr[c + 1]; k++) {
+            double before =
+                k > card->curves.curve_ptr[c] ? card->curves.curve_stress[k - 1] * (1 + LEAST_RISE) : 0;
+            card->curves.curve_stress[k] =
+                fmax(before, card->curves.curve_stress[k] *
+                                 exp(bend_at(count, strain, bend, card->curves.curve_strain[k])));
+        }
+    return softfall_return(&err, error);
+}
+
+softfall_status softfall_material_write(const softfall_material *material, const char *folder,
+                                        const char *name, const char *title, const char *comments,
+                                        softfall_error *error) {
+    sf_error err = SF_ERROR_INIT;
+    const sf_material_text text = {.title = title, .provenance = comments};
+    sf_material_write_checked(folder, name, &material->data, &text, &err);
+    return softfall_return(&err, error);
 }
 
 static sf_status check_path(const sf_point_path *path, sf_error *err) {
@@ -112,8 +155,8 @@ softfall_status softfall_hyperfoam_material(const softfall_hyperfoam *values, so
                               .stable_to = 0.9,
                               .shared.informed_strain = values->informed};
     for (int k = 0; k < values->terms && k < SF_HYPERFOAM_TERMS; k++)
-        card.term[k] = (sf_hyperfoam_term){
-            .mu = values->mu[k], .alpha = values->alpha[k], .nu = values->nu[k]};
+        card.term[k] =
+            (sf_hyperfoam_term){.mu = values->mu[k], .alpha = values->alpha[k], .nu = values->nu[k]};
     const sf_material made = sf_hyperfoam_material(&card);
     *out = sf_material_handle(&made, &err);
     return softfall_return(&err, error);

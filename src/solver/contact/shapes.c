@@ -1,14 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "solver/contact/shape.h"
+#include "solver/contact/shapes.h"
 
 #include "base/mat3.h"
+#include "solver/contact/shape_edge.h"
+#include "solver/contact/shape_face.h"
+#include "solver/contact/shape_plane.h"
+#include "solver/contact/shape_sphere.h"
+#include "solver/contact/shape_surface.h"
+#include "solver/contact/sharp.h"
 
-#define ADDRESS(name) &sf_shape_##name,
-const sf_shape *const sf_shapes[SF_SHAPES] = {SF_SHAPE_ROWS(ADDRESS)};
+const sf_shape *const sf_shapes[] = {&sf_shape_plane,
+                                     &sf_shape_sphere,
+                                     &sf_shape_surface,
+                                     &sf_shape_face,
+                                     &sf_shape_edge,
+                                     &sf_shape_sharp,
+                                     NULL};
 
 sf_shape_triangles sf_shape_triangles_of(const sf_model *m, int body) {
     sf_shape_triangles out = {0};
-    for (int k = 0; k < SF_SHAPES && out.count == 0; k++)
+    for (int k = 0; sf_shapes[k] && out.count == 0; k++)
         if (sf_shapes[k]->triangles)
             out = sf_shapes[k]->triangles(m, body);
     return out;
@@ -19,7 +30,7 @@ sf_status sf_body_build(const sf_model *m, int number, sf_body *body, sf_error *
     for (int64_t c = 0; c < m->contact_count; c++)
         reach = fmax(reach, m->spacing[m->contact_node[c]]);
     *body = (sf_body){0};
-    for (int k = 0; k < SF_SHAPES && !body->data && err->status == SF_OK; k++)
+    for (int k = 0; sf_shapes[k] && !body->data && err->status == SF_OK; k++)
         if (sf_shapes[k]->build) {
             body->shape = sf_shapes[k];
             sf_shapes[k]->build(m, number, reach, &body->data, err);
