@@ -249,6 +249,9 @@ static void a_process_that_fails_is_told(void **state) {
         {"while printf '\\3\\0\\0\\0\\0\\0\\0\\0/absent\\0' >&3; do :; done", "without reading the answers"},
         {"exec sleep 1000", "gmsh waits without working"},
         {"while :; do :; done", "more than 3 s of processor time"},
+        /* the number of the host as that of a spare, which would be killed in the end */
+        {"printf \"$(printf '\\\\x%02x' $((PPID & 255)) $((PPID >> 8 & 255)) $((PPID >> 16)) 0)\" >&6; exit 3",
+         "gmsh ended without a mesh"},
         {"kill -HUP $$", "interrupted (Hangup) while gmsh was at work"},
         {"yes 0123456789 | head -c 3000000 >&2; echo; echo last >&2", "gmsh ended without a mesh: last"},
     };
@@ -326,6 +329,61 @@ static void what_was_read_is_listed(void **state) {
     sf_gmsh_end(&session);
 }
 
+/* The first child process that there is, and their number. */
+static int first_child(pid_t *first) {
+    char path[64];
+    int count = 0;
+    long process;
+    snprintf(path, sizeof path, "/proc/self/task/%d/children", (int)getpid());
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fscanf(file, "%ld", &process) == 1)
+        if (count++ == 0)
+            *first = (pid_t)process;
+    fclose(file);
+    return count;
+}
+
+static int64_t load(sf_gmsh *session, const char *text) {
+    const sf_geo_source source = {.path = (char[]){"attack.geo"}};
+    sf_error err = SF_ERROR_INIT;
+    sf_mesh mesh = {0};
+    write_text("attack.geo", text);
+    if (sf_gmsh_load(session, &source, &err) != SF_OK ||
+        sf_gmsh_read_mesh(session, "pad", 1e-3, &mesh, &err) != SF_OK)
+        fail_msg("%s", err.text);
+    int64_t count = mesh.node_count;
+    sf_mesh_free(&mesh);
+    return count;
+}
+
+/* The spare softfall-mesh of a session has read none of the geometries before; one that was killed is
+ * replaced; nothing is left of it. */
+static void geometries_of_a_session_see_nothing_of_each_other(void **state) {
+    static const char *const before = BOX "left = 1; Mesh.MeshSizeMax = 0.1;\n";
+    static const char *const after = "If (Exists(left))\nAbort;\nEndIf\n" BOX;
+    sf_error err = SF_ERROR_INIT;
+    sf_gmsh *session = NULL;
+    pid_t spare = 0, later = 0;
+    (void)state;
+    assert_int_equal(first_child(&spare), 0);
+    assert_int_equal(sf_gmsh_begin(&session, &err), SF_OK);
+    session->limits.spare = &session->spare;
+    const int64_t alone = load(session, after);
+    assert_int_equal(first_child(&spare), 1);
+    for (int k = 0; k < 3; k++) {
+        assert_true(alone > 0 && load(session, before) > alone);
+        assert_int_equal(load(session, after), alone);
+        assert_int_equal(first_child(&later), 1);
+        assert_true(k == 1 ? later != spare : later == spare);
+        spare = later;
+        if (k == 0)
+            kill(spare, SIGKILL);
+    }
+    sf_gmsh_end(&session);
+    assert_int_equal(first_child(&spare), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(programs_are_not_started),
@@ -336,6 +394,7 @@ int main(void) {
         cmocka_unit_test(an_ignored_signal_stays_ignored),
         cmocka_unit_test(without_filters_it_is_refused_unless_asked_for),
         cmocka_unit_test(what_was_read_is_listed),
+        cmocka_unit_test(geometries_of_a_session_see_nothing_of_each_other),
     };
     const struct CMUnitTest slow[] = {
         cmocka_unit_test(work_has_an_end),

@@ -36,6 +36,7 @@ ALLOWED = {
     "io/h5_file": {"library": "opens what has passed the gate (/proc/self/fd)"},
     "io/process": {"open": "/dev/null and the log of another program"},
     "pre/mesher/confine": {"open": "numbers of its own process in /proc, before it is confined"},
+    "pre/mesher/serve": {"open": "the number of its threads in /proc, and clone with CLONE_PARENT, which fork() cannot do"},
     "pre/mesher/work": {"library": "the process of gmsh, which cannot open files: the gate of softfall-pre does it"},
     "pre/mesh/broker": {"open": "its own sealed copies in memory, anew for each reader"},
     "pre/mesh/mesher": {"open": "/proc/meminfo, and /dev/null for the process of gmsh"},

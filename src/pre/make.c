@@ -74,7 +74,9 @@ static sf_status read_geometry(sf_case *c, sf_mesh *mesh, sf_surface *surface,
     SF_OWNED_BY(sf_gmsh_end) sf_gmsh *session = NULL;
     if (sf_gmsh_begin(&session, err) == SF_OK) {
         session->store = c->store;
-        session->limits = (sf_mesher_limits){c->mesh_time_limit, sink};
+        session->limits = (sf_mesher_limits){.seconds = c->mesh_time_limit, .sink = sink};
+        if (c->missile.path || c->support_count > 0)
+            session->limits.spare = &session->spare;
     }
     if (session && sf_gmsh_load(session, &c->pad, err) == SF_OK && read_pad(session, c, mesh, err) == SF_OK &&
         (!c->missile.path || sf_gmsh_load(session, &c->missile, err) == SF_OK)) {

@@ -3,6 +3,7 @@
  * libsoftfall-build (pre/mesh/mesher.h), which start it. It is of no use by hand. */
 #include "pre/mesh/mesher_protocol.h"
 #include "pre/mesher/confine.h"
+#include "pre/mesher/serve.h"
 #include "pre/mesher/work.h"
 
 #include <dlfcn.h>
@@ -34,6 +35,7 @@ static void tell_of_no_memory(void) {
 /* The destructors of gmsh and its libraries do not run: nothing of them matters any more. */
 int main(void) {
     static sf_mesher_request request;
+    sf_serve();
     if (recv(SF_MESHER_CONTROL, &request, sizeof request, 0) != (ssize_t)sizeof request ||
         request.version != SF_MESHER_VERSION) {
         fputs("softfall-mesh is started by softfall-pre\n", stderr);

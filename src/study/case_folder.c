@@ -303,7 +303,8 @@ static sf_status write_files(folder *f, sf_error *err) {
 }
 
 static sf_status mesh_each(const sf_case *c, sf_meshed mesh[SF_GEOMETRIES], sf_error *err) {
-    const sf_mesher_limits limits = {c->mesh_time_limit, NULL};
+    SF_OWNED_BY(sf_mesher_spare_end) sf_mesher_spare spare = {0};
+    const sf_mesher_limits limits = {c->mesh_time_limit, NULL, &spare};
     for (int k = 0; k < SF_GEOMETRIES && err->status == SF_OK; k++)
         if (sf_case_geometry(c, k)->path)
             sf_mesher_run(sf_case_geometry(c, k), &limits, &mesh[k], err);

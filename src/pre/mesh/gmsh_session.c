@@ -22,6 +22,7 @@ sf_status sf_gmsh_begin(sf_gmsh **session, sf_error *err) {
 void sf_gmsh_end(sf_gmsh **session) {
     if (!*session)
         return;
+    sf_mesher_spare_end(&(*session)->spare);
     sf_meshed_free(&(*session)->open);
     SF_FREE((*session)->files, *session);
     *session = NULL;

@@ -16,8 +16,9 @@ typedef struct sf_gmsh {
      * asked for, from the folder of that geometry or absolute. The line SF_GMSH_UNKNOWN_FILES stands for
      * files that are not known, because gmsh was not confined. */
     char *files;
-    sf_meshed open; /* the last geometry */
-    char file[512]; /* its path, for sentences */
+    sf_mesher_spare spare; /* for `limits`, where several geometries follow each other */
+    sf_meshed open;        /* the last geometry */
+    char file[512];        /* its path, for sentences */
 } sf_gmsh;
 
 sf_status sf_gmsh_begin(sf_gmsh **session, sf_error *err);

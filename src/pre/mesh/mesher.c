@@ -16,7 +16,7 @@
 #include "io/plain_file.h"
 #include "io/process.h"
 #include "pre/mesh/geo_parameters.h"
-#include "pre/mesh/mesher_protocol.h"
+#include "pre/mesh/mesher_spare.h"
 
 double sf_memory_available(void) {
     const char *given = getenv("SOFTFALL_MEMORY_MB");
@@ -77,7 +77,7 @@ typedef struct mesher_child {
 
 /* The child's ends, out of the way of the numbers that they get there. */
 typedef struct ends {
-    int control, data, print, parameters;
+    int control, data, print, parameters, spare;
 } ends;
 
 static int lift(int file) {
@@ -88,10 +88,15 @@ static int lift(int file) {
 }
 
 static void close_ends(const ends *e) {
-    const int file[] = {e->control, e->data, e->print, e->parameters};
+    const int file[] = {e->control, e->data, e->print, e->parameters, e->spare};
     for (size_t k = 0; k < sizeof file / sizeof file[0]; k++)
         if (file[k] >= 0)
             close(file[k]);
+}
+
+static void close_all(const mesher_child *child, const ends *e) {
+    close_ends(e);
+    close_ends(&(ends){child->control, child->data, child->print, -1, -1});
 }
 
 static bool make_ends(const char *parameters, mesher_child *child, ends *e) {
@@ -102,7 +107,7 @@ static bool make_ends(const char *parameters, mesher_child *child, ends *e) {
     child->data = data[0];
     child->print = print[0];
     *e = (ends){lift(control[1]), lift(data[1]), lift(print[1]),
-                lift(sf_broker_memory(parameters, strlen(parameters)))};
+                lift(sf_broker_memory(parameters, strlen(parameters))), -1};
     return made && e->control >= 0 && e->data >= 0 && e->print >= 0 && e->parameters >= 0;
 }
 
@@ -111,11 +116,13 @@ static int prepare(posix_spawn_file_actions_t *actions, const ends *e) {
                             {e->print, 2},
                             {e->control, SF_MESHER_CONTROL},
                             {e->data, SF_MESHER_DATA},
-                            {e->parameters, SF_MESHER_PARAMETERS}};
+                            {e->parameters, SF_MESHER_PARAMETERS},
+                            {e->spare, SF_MESHER_SPARE}};
+    const int count = (int)(sizeof pairs / sizeof pairs[0]) - (e->spare < 0);
     int result = posix_spawn_file_actions_addopen(actions, 0, "/dev/null", O_RDONLY, 0);
-    for (size_t k = 0; k < sizeof pairs / sizeof pairs[0] && result == 0; k++)
+    for (int k = 0; k < count && result == 0; k++)
         result = posix_spawn_file_actions_adddup2(actions, pairs[k][0], pairs[k][1]);
-    return result == 0 ? posix_spawn_file_actions_addclosefrom_np(actions, SF_MESHER_PARAMETERS + 1) : result;
+    return result == 0 ? posix_spawn_file_actions_addclosefrom_np(actions, pairs[count - 1][1] + 1) : result;
 }
 
 /* The child inherits only the places of libraries from the user's environment. The options are for the
@@ -153,29 +160,45 @@ static int prepare_signals(posix_spawnattr_t *attributes) {
     return result == 0 ? posix_spawnattr_setsigmask(attributes, &none) : result;
 }
 
-/* The child gets `parameters` as a file, a small environment and no other open files. */
-static sf_status start(const char *parameters, mesher_child *child, sf_error *err) {
-    char path[PATH_MAX];
-    ends e;
+/* Starts the program; returns an errno value. */
+static int start_program(const char *path, sf_mesher_spare *spare, ends *e, pid_t *process) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
-    SF_TRY(sf_mesher_find(path, sizeof path, err));
-    int result = make_ends(parameters, child, &e) ? 0 : errno;
+    e->spare = spare ? lift(sf_mesher_spare_prepare(spare)) : -1;
     posix_spawn_file_actions_init(&actions);
     posix_spawnattr_init(&attributes);
-    if (result == 0)
-        result = prepare(&actions, &e);
+    int result = prepare(&actions, e);
     if (result == 0)
         result = prepare_signals(&attributes);
     if (result == 0)
-        result = spawn(path, &actions, &attributes, &child->process);
+        result = spawn(path, &actions, &attributes, process);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
+    return result;
+}
+
+/* The child, of the spare or of the program, gets `parameters` as a file, a small environment and no other
+ * open files. */
+static sf_status start(const char *parameters, sf_mesher_spare *spare, mesher_child *child, sf_error *err) {
+    char path[PATH_MAX];
+    ends e;
+    SF_TRY(sf_mesher_find(path, sizeof path, err));
+    int result = make_ends(parameters, child, &e) ? 0 : errno;
+    if (result == 0 && spare && spare->is_open) {
+        child->process = sf_mesher_spare_fork(spare, (int[]){e.control, e.data, e.parameters, e.print});
+        if (child->process == 0) { /* it may have handed on the files: the program gets others */
+            close_all(child, &e);
+            result = make_ends(parameters, child, &e) ? 0 : errno;
+        }
+    }
+    if (result == 0 && child->process == 0)
+        result = start_program(path, spare, &e, &child->process);
+    if (result != 0) {
+        close_all(child, &e);
+        return SF_FAIL(err, SF_ERR_IO, "%s cannot be started: %s", path, strerror(result));
+    }
     close_ends(&e);
-    if (result == 0)
-        return SF_OK;
-    close_ends(&(ends){child->control, child->data, child->print, -1});
-    return SF_FAIL(err, SF_ERR_IO, "%s cannot be started: %s", path, strerror(result));
+    return SF_OK;
 }
 
 enum { LINE_SIZE = 400, REPORT_SECONDS = 10, MOST_MESSAGES = 100000 };
@@ -537,7 +560,7 @@ sf_status sf_mesher_run(const sf_geo_source *source, const sf_mesher_limits *lim
     c.broker.parameters = parameters;
     c.broker.most = c.bytes < 0x1p34 ? (uint64_t)(c.bytes / 4) : (uint64_t)1 << 32;
     if (err->status == SF_OK && check_content(source->path, err) == SF_OK &&
-        start(parameters, &c.child, err) == SF_OK) {
+        start(parameters, limits->spare, &c.child, err) == SF_OK) {
         send_request(&c, err);
         if (err->status != SF_OK)
             stop(&c);

@@ -3,6 +3,7 @@
 #include "case/case.h"
 #include "pre/mesh/broker.h"
 #include "pre/mesh/mesh_stream.h"
+#include "pre/mesh/mesher_spare.h"
 
 /* The memory that softfall-pre may take: SOFTFALL_MEMORY_MB of the environment if it is set, else the
  * memory that Linux calls available. */
@@ -19,8 +20,9 @@ sf_status sf_mesher_find(char *path, size_t size, sf_error *err);
  * error. */
 
 typedef struct sf_mesher_limits {
-    double seconds;      /* of processor time; 0: SF_MESHER_SECONDS */
-    const sf_sink *sink; /* told every ten seconds that gmsh works; may be NULL */
+    double seconds;         /* of processor time; 0: SF_MESHER_SECONDS */
+    const sf_sink *sink;    /* told every ten seconds that gmsh works; may be NULL */
+    sf_mesher_spare *spare; /* for several geometries; borrowed, NULL: none */
 } sf_mesher_limits;
 
 enum { SF_MESHER_SECONDS = 600 };

@@ -14,7 +14,13 @@ enum {
     SF_MESHER_CONTROL = 3,    /* socket (SOCK_SEQPACKET) of the messages below */
     SF_MESHER_DATA = 4,       /* pipe of the mesh stream */
     SF_MESHER_PARAMETERS = 5, /* a .geo text that sets the parameters */
+    SF_MESHER_SPARE = 6,      /* socket (SOCK_SEQPACKET) of a spare, closed before the request is read */
 };
+
+/* On SF_MESHER_SPARE the spare, a fork that has read nothing, tells its own number of process (int32_t). For
+ * each further job it receives a byte with the files control, data, parameters and print, and answers with
+ * the number of the child that it has forked for it, or one below 0 if it could not. */
+enum { SF_MESHER_JOB = 4 };
 
 /* The confined child opens the parameters by this name, which the parent knows. */
 #define SF_MESHER_PARAMETERS_NAME "softfall-parameters.geo"
