@@ -77,9 +77,6 @@ double program_json_number(const char *json, const char *after, const char *key)
 double program_file_number(const program_place *place, const char *name, const char *key);
 /* The largest magnitude of a column of folder/out/history.csv. */
 double program_history_largest(const program_place *place, const char *column);
-/* Fails unless folder/page is well-formed, loads nothing, runs nothing, has each id once and shows the words.
- */
-void program_assert_page(const program_place *place, const char *page, const char *words);
 /* Fails if the file at `path` is not byte by byte what `before` is; releases `before`. */
 void program_assert_unchanged(const char *path, program_bytes *before);
 
