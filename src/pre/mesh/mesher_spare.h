@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A spare softfall-mesh for the further geometries of a session. Loading gmsh takes 0.15 s, a fork of the
- * loaded process a tenth of that. The first softfall-mesh therefore forks a copy of itself before it reads
- * anything; the copy waits, and forks a child of this process for each further geometry. It reads none
- * itself, so that no geometry sees another (docs/adr/0014-confined-gmsh.md). */
+/* A spare softfall-mesh for the further geometries of a session, as loading gmsh takes long beside a fork of
+ * the loaded process (docs/adr/0014-confined-gmsh.md). The first softfall-mesh forks a copy of itself before
+ * it reads anything; the copy waits, and forks a child of this process for each further geometry. It reads
+ * none itself, so that no geometry sees another. */
 #pragma once
 #include "pre/mesh/mesher_protocol.h"
 
